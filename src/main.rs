@@ -1,0 +1,2 @@
+//! The `lwc` program.
+fn main() {}

@@ -1,0 +1,5 @@
+//! Triangle meshes on flat arrays.
+
+mod tri_mesh;
+
+pub use tri_mesh::{MeshError, TriMesh};
