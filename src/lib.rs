@@ -1,12 +1,36 @@
 //! Progressive codec for triangle meshes.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod bitstream;
+mod decoder;
 #[cfg(feature = "encoder")]
 pub mod descriptors;
+#[cfg(feature = "encoder")]
+mod encoder;
+mod error;
 #[cfg(feature = "io")]
 pub mod io;
+mod lifting;
+mod limits;
 pub mod mesh;
 #[cfg(feature = "metrics")]
 pub mod metrics;
 
+#[cfg(feature = "encoder")]
+mod partition;
+mod passes;
+#[cfg(feature = "encoder")]
+mod simplify;
+
+pub use decoder::{DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, StreamInfo, Update, decode};
+#[cfg(feature = "encoder")]
+pub use encoder::{EncodeOptions, Encoded, Progress, encode, encode_with_progress};
+pub use error::DecodeError;
+#[cfg(feature = "encoder")]
+pub use error::EncodeError;
+pub use limits::Limits;
+#[cfg(feature = "encoder")]
+pub use mesh::repair::RepairReport;
 pub use mesh::{MeshError, TriMesh};
+#[cfg(feature = "encoder")]
+pub use partition::Partition;

@@ -1,5 +1,10 @@
 //! Triangle meshes on flat arrays.
 
+mod build;
+#[cfg(feature = "encoder")]
+pub(crate) mod repair;
+pub(crate) mod surface;
 mod tri_mesh;
 
+pub(crate) use surface::Surface;
 pub use tri_mesh::{MeshError, TriMesh};

@@ -64,6 +64,12 @@ impl TriMesh {
         Ok(Self { positions, triangles })
     }
 
+    /// Arrays that are known to make a mesh.
+    pub(crate) fn from_valid_parts(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
+        debug_assert!(triangles.iter().flatten().all(|&v| (v as usize) < positions.len()));
+        Self { positions, triangles }
+    }
+
     /// Vertex positions, n × 3, model units.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions

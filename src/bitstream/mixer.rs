@@ -1,0 +1,218 @@
+//! Adaptive bits with mixed contexts (`format/SPEC.md`, section 6.3): counters predict a bit from
+//! one context each, a small online logistic regression weighs them.
+
+use super::range_coder::BitCoder;
+use super::tables::Tables;
+
+/// Inputs of every mixer: contexts, direct inputs and the bias together. Two SIMD vectors.
+pub(crate) const LANES: usize = 8;
+
+/// Weight a context starts with.
+const INITIAL_WEIGHT: f32 = 0.35;
+/// Step of the weights: FAST / (1 + n / DECAY) + SLOW after n bits.
+const RATE_FAST: f32 = 0.02;
+const RATE_SLOW: f32 = 0.002;
+const RATE_DECAY: f32 = 256.0;
+
+/// Probability of a one in one context: 22 bits of probability, 10 bits of age.
+#[derive(Clone, Copy)]
+pub(crate) struct Counter(u32);
+
+impl Counter {
+    const AGE_MASK: u32 = 0x3ff;
+
+    pub(crate) const fn new() -> Self {
+        Self(1 << 31)
+    }
+
+    /// Probability of a one in 1/4096.
+    #[inline]
+    fn p12(self) -> usize {
+        (self.0 >> 20) as usize
+    }
+
+    /// Moves towards `bit` by 1/(age + 1.5), the age growing up to `limit`.
+    #[inline]
+    fn update(&mut self, bit: bool, limit: u32, reciprocal: &[u32; 1024]) {
+        let age = self.0 & Self::AGE_MASK;
+        let p = self.0 >> 10;
+        let r = u64::from(reciprocal[age as usize]);
+        let p = if bit {
+            p + (u64::from((1 << 22) - 1 - p) * r >> 16) as u32
+        } else {
+            p - (u64::from(p) * r >> 16) as u32
+        };
+        self.0 = p << 10 | (age + 1).min(limit);
+    }
+}
+
+const fn reciprocals() -> [u32; 1024] {
+    let mut table = [0; 1024];
+    let mut age = 0;
+    while age < 1024 {
+        // 65536 / (age + 1.5), rounded down.
+        table[age] = (2 * 65_536 / (2 * age + 3)) as u32;
+        age += 1;
+    }
+    table
+}
+
+static RECIPROCALS: [u32; 1024] = reciprocals();
+
+/// A binary decision with `C` contexts and up to `LANES − 1 − C` direct inputs.
+pub(crate) struct MixedBit<const C: usize> {
+    /// Counters of all contexts, one run of `sizes[i]` after the other.
+    counters: Vec<Counter>,
+    starts: [usize; C],
+    sizes: [usize; C],
+    weights: Vec<[f32; LANES]>,
+    seen: Vec<u32>,
+    limit: u32,
+}
+
+impl<const C: usize> MixedBit<C> {
+    /// `sizes`: number of values of each context; `sets`: number of weight sets; `direct`: weight
+    /// the direct inputs start with; `limit`: largest age of a counter, below 1024.
+    pub(crate) fn new(sizes: [usize; C], sets: usize, direct: f32, limit: u32) -> Self {
+        let mut starts = [0; C];
+        let mut total = 0;
+        for (start, size) in starts.iter_mut().zip(sizes) {
+            *start = total;
+            total += size;
+        }
+        let weights = std::array::from_fn(|i| match i {
+            0 => 0.0,
+            i if i <= C => INITIAL_WEIGHT,
+            _ => direct,
+        });
+        Self {
+            counters: vec![Counter::new(); total],
+            starts,
+            sizes,
+            weights: vec![weights; sets],
+            seen: vec![0; sets],
+            limit,
+        }
+    }
+
+    /// Codes one bit and learns it. `contexts[i] < sizes[i]`; `direct` are log-odds of a one.
+    #[inline]
+    pub(crate) fn code<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        tables: &Tables,
+        contexts: [usize; C],
+        direct: &[f32],
+        set: usize,
+        bit: bool,
+    ) -> bool {
+        let mut inputs = [0.0_f32; LANES];
+        inputs[0] = 0.3;
+        let mut slots = [0; C];
+        for i in 0..C {
+            debug_assert!(contexts[i] < self.sizes[i], "context {i}: {} of {}", contexts[i], self.sizes[i]);
+            slots[i] = self.starts[i] + contexts[i];
+            inputs[1 + i] = tables.stretch(self.counters[slots[i]].p12());
+        }
+        inputs[1 + C..1 + C + direct.len()].copy_from_slice(direct);
+
+        let weights = &mut self.weights[set];
+        let product: [f32; LANES] = std::array::from_fn(|i| weights[i] * inputs[i]);
+        let half: [f32; 4] = std::array::from_fn(|i| product[i] + product[i + 4]);
+        let p1 = tables.squash((half[0] + half[2]) + (half[1] + half[3]));
+
+        let bit = coder.code(bit, p1);
+
+        let seen = &mut self.seen[set];
+        let rate = RATE_SLOW + RATE_FAST / (1.0 + *seen as f32 * (1.0 / RATE_DECAY));
+        *seen = seen.saturating_add(1);
+        let target = if bit { 1.0 } else { 0.0 };
+        let step = (target - p1 as f32 * (1.0 / 65_536.0)) * rate;
+        for (weight, input) in weights.iter_mut().zip(inputs) {
+            *weight += step * input;
+        }
+        for slot in slots {
+            self.counters[slot].update(bit, self.limit, &RECIPROCALS);
+        }
+        bit
+    }
+}
+
+/// Adaptive bits of one context each, for syntax that is too rare to deserve a mixer.
+pub(crate) struct PlainBits {
+    counters: Vec<Counter>,
+}
+
+impl PlainBits {
+    const LIMIT: u32 = 60;
+
+    pub(crate) fn new(size: usize) -> Self {
+        Self { counters: vec![Counter::new(); size] }
+    }
+
+    #[inline]
+    pub(crate) fn code<B: BitCoder>(&mut self, coder: &mut B, context: usize, bit: bool) -> bool {
+        let counter = &mut self.counters[context];
+        let bit = coder.code(bit, (counter.0 >> 16).clamp(64, 65_536 - 64));
+        counter.update(bit, Self::LIMIT, &RECIPROCALS);
+        bit
+    }
+
+    /// Codes a number of any size as Elias gamma, its exponent adaptive from context `base` on:
+    /// 34 contexts are used.
+    pub(crate) fn code_number<B: BitCoder>(&mut self, coder: &mut B, base: usize, value: u32) -> Option<u32> {
+        let value = u64::from(value) + 1;
+        let exponent = value.ilog2();
+        let mut coded = 0;
+        while self.code(coder, base + coded as usize, coded < exponent) {
+            coded += 1;
+            if coded > 32 {
+                return None;
+            }
+        }
+        let low = coder.code_raw((value & ((1 << exponent) - 1)) as u32, coded);
+        u32::try_from((1_u64 << coded | u64::from(low)) - 1).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
+
+    #[test]
+    fn a_context_that_tells_is_learnt() {
+        let bit_of = |i: usize| i * i % 7 < 2;
+        let run = |coder: &mut RangeEncoder| {
+            let mut model = MixedBit::new([7, 3], 1, 0.5, 255);
+            for i in 0..20_000 {
+                model.code(coder, Tables::get(), [i % 7, i % 3], &[0.1], 0, bit_of(i));
+            }
+        };
+        let mut encoder = RangeEncoder::new();
+        run(&mut encoder);
+        let bytes = encoder.finish();
+        assert!(bytes.len() < 400, "{} bytes for 20,000 determined bits", bytes.len());
+        let mut decoder = RangeDecoder::new(&bytes);
+        let mut model = MixedBit::new([7, 3], 1, 0.5, 255);
+        for i in 0..20_000 {
+            assert_eq!(model.code(&mut decoder, Tables::get(), [i % 7, i % 3], &[0.1], 0, false), bit_of(i));
+        }
+    }
+
+    #[test]
+    fn numbers_of_every_size_return() {
+        let values = [0, 1, 2, 3, 100, 65_535, u32::MAX - 1, u32::MAX];
+        let mut encoder = RangeEncoder::new();
+        let mut bits = PlainBits::new(34);
+        for value in values {
+            bits.code_number(&mut encoder, 0, value);
+        }
+        let bytes = encoder.finish();
+        let mut decoder = RangeDecoder::new(&bytes);
+        let mut bits = PlainBits::new(34);
+        for value in values {
+            assert_eq!(bits.code_number(&mut decoder, 0, 0), Some(value));
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Bytes, chunks, and the entropy coder. Knows no mesh.
+
+pub(crate) mod bytes;
+pub(crate) mod chunk;
+pub(crate) mod header;
+pub(crate) mod mixer;
+pub(crate) mod range_coder;
+pub(crate) mod residual;
+pub(crate) mod tables;

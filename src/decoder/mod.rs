@@ -1,0 +1,10 @@
+//! From bytes to meshes, coarse to fine.
+
+mod frame;
+mod level_mesh;
+mod passes;
+mod push;
+
+pub use frame::{PassInfo, PassKind, StreamInfo};
+pub use level_mesh::LevelMesh;
+pub use push::{DecodeOptions, Decoder, Update, decode};

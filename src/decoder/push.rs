@@ -1,0 +1,267 @@
+//! The push decoder: bytes in, refined meshes out.
+
+use super::frame::{self, Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
+use super::level_mesh::LevelMesh;
+use super::passes::{self, PassDecoder};
+use crate::bitstream::chunk::kind;
+use crate::bitstream::header::{Grid, Provenance};
+use crate::limits::Limits;
+use crate::{DecodeError, TriMesh};
+use std::ops::Range;
+
+/// What one finished pass changed.
+///
+/// Vertices and triangles keep their indices for ever: new ones are appended, triangles of a split
+/// are rewritten in place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Update {
+    /// The pass, and counts, level and precision after it.
+    pub pass: PassInfo,
+    /// Vertices with a new or different position.
+    pub vertices: Range<u32>,
+    /// Triangles that are new.
+    pub new_triangles: Range<u32>,
+    /// Older triangles with different vertices: ascending, disjoint ranges.
+    pub rewritten_triangles: Vec<Range<u32>>,
+}
+
+/// Decodes a stream as it arrives.
+///
+/// ```
+/// # fn run(network: impl Iterator<Item = Vec<u8>>) -> Result<(), lwc::DecodeError> {
+/// let mut decoder = lwc::Decoder::new(lwc::Limits::default());
+/// for bytes in network {
+///     for update in decoder.push(&bytes)? {
+///         println!("level {}: {} vertices", update.pass.level, update.pass.vertices);
+///     }
+///     if let Some(mesh) = decoder.mesh() {
+///         println!("{} triangles to draw", mesh.num_triangles());
+///     }
+/// }
+/// # Ok(()) }
+/// ```
+pub struct Decoder {
+    limits: Limits,
+    last_level: u32,
+    frames: FrameReader,
+    grid: Option<Grid>,
+    provenance: Option<Provenance>,
+    info: Option<StreamInfo>,
+    /// Passes done.
+    done: usize,
+    passes: PassDecoder,
+    failed: bool,
+}
+
+impl Decoder {
+    /// A decoder of all levels.
+    pub fn new(limits: Limits) -> Self {
+        Self::with_options(DecodeOptions::new().limits(limits))
+    }
+
+    /// A decoder that may stop at a level.
+    pub fn with_options(options: DecodeOptions) -> Self {
+        Self {
+            limits: options.limits,
+            last_level: options.level.unwrap_or(u32::MAX),
+            frames: FrameReader::new(),
+            grid: None,
+            provenance: None,
+            info: None,
+            done: 0,
+            passes: PassDecoder::new(),
+            failed: false,
+        }
+    }
+
+    /// Takes the next bytes of the stream, however they are cut, and applies every pass that is
+    /// complete. The ranges of each update refer to the mesh after the call.
+    ///
+    /// # Errors
+    /// If the stream is damaged, not a stream, or beyond the limits. The finest complete mesh stays
+    /// available; the decoder takes no more bytes. Passes finished in the same call are then not
+    /// reported, see [`Decoder::passes_done`].
+    pub fn push(&mut self, bytes: &[u8]) -> Result<Vec<Update>, DecodeError> {
+        self.feed(bytes)?;
+        let mut updates = Vec::new();
+        while let Some(update) = self.step()? {
+            updates.push(update);
+        }
+        Ok(updates)
+    }
+
+    /// Takes bytes without decoding them; [`Decoder::step`] does.
+    ///
+    /// # Errors
+    /// If the decoder has failed before, or holds too many bytes.
+    pub fn feed(&mut self, bytes: &[u8]) -> Result<(), DecodeError> {
+        if self.failed {
+            return Err(DecodeError::Failed);
+        }
+        if self.is_complete() {
+            return Ok(());
+        }
+        let needed = self.frames.buffered() as u64 + bytes.len() as u64;
+        Limits::check("memory", needed, self.limits.max_memory).inspect_err(|_| self.failed = true)?;
+        self.frames.feed(bytes);
+        Ok(())
+    }
+
+    /// Applies the next pass if all its bytes are there: one pass at a time, for callers who want to
+    /// see every mesh or to do something in between.
+    ///
+    /// # Errors
+    /// As [`Decoder::push`].
+    pub fn step(&mut self) -> Result<Option<Update>, DecodeError> {
+        if self.failed {
+            return Err(DecodeError::Failed);
+        }
+        self.try_step().inspect_err(|_| self.failed = true)
+    }
+
+    fn try_step(&mut self) -> Result<Option<Update>, DecodeError> {
+        self.read_info()?;
+        while self.info.is_some() && !self.is_complete() {
+            let Some(chunk) = self.frames.next_chunk(&self.limits)? else {
+                return Ok(None);
+            };
+            match chunk.kind {
+                kind::BASE | kind::SPLIT | kind::REFINE => return self.apply(&chunk).map(Some),
+                kind::HEADER | kind::PASSES => return Err(out_of_order(&chunk)),
+                _ => skip(&chunk)?,
+            }
+        }
+        Ok(None)
+    }
+
+    /// Reads chunks up to the table of passes.
+    pub(super) fn read_info(&mut self) -> Result<(), DecodeError> {
+        while self.info.is_none() {
+            let Some(chunk) = self.frames.next_chunk(&self.limits)? else {
+                return Ok(());
+            };
+            let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
+            let payload = self.frames.payload(&chunk);
+            match (chunk.kind, &self.grid) {
+                (kind::HEADER, None) => {
+                    self.grid = Some(Grid::read(payload).ok_or(malformed("the header"))?);
+                }
+                (kind::PASSES, Some(grid)) => {
+                    let passes = frame::list_passes(payload, grid, self.frames.position());
+                    let passes = passes.map_err(|e| malformed(e.0))?;
+                    self.info = Some(StreamInfo { grid: *grid, provenance: self.provenance, passes });
+                }
+                (kind::PROVENANCE, _) => self.provenance = Provenance::read(payload),
+                (kind::HEADER | kind::PASSES | kind::BASE | kind::SPLIT | kind::REFINE, _) => {
+                    return Err(out_of_order(&chunk));
+                }
+                _ => skip(&chunk)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn apply(&mut self, chunk: &Chunk) -> Result<Update, DecodeError> {
+        let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
+        let pass = self.next_pass().copied().ok_or(malformed("a pass that was not announced"))?;
+        let payload = self.frames.payload(chunk);
+        if chunk.kind != frame::kind_of(pass.kind) || payload.len() != pass.row.bytes as usize {
+            return Err(malformed("a pass differs from the table of passes"));
+        }
+        passes::check_limits(&pass, &self.limits, self.frames.buffered())?;
+        let changes = self.passes.apply(&pass, payload).map_err(|e| malformed(e.0))?;
+        self.done += 1;
+        Ok(Update {
+            pass,
+            vertices: changes.first_vertex..pass.vertices,
+            new_triangles: changes.first_new_face..pass.faces,
+            rewritten_triangles: changes.rewritten_faces,
+        })
+    }
+
+    /// The pass that is decoded next, unless the stream or the wanted level is complete.
+    fn next_pass(&self) -> Option<&PassInfo> {
+        let pass = self.info.as_ref()?.passes.get(self.done)?;
+        let beyond = pass.level > self.last_level && pass.kind == PassKind::Split;
+        (!beyond).then_some(pass)
+    }
+
+    /// What the stream says of itself, once its table of passes has arrived.
+    pub fn info(&self) -> Option<&StreamInfo> {
+        self.info.as_ref()
+    }
+
+    /// The finest complete mesh.
+    pub fn mesh(&self) -> Option<LevelMesh<'_>> {
+        let info = self.info.as_ref()?;
+        let pass = info.passes.get(self.done.checked_sub(1)?)?;
+        Some(LevelMesh {
+            mesh: &self.passes.mesh,
+            grid: &info.grid,
+            precision: pass.precision,
+            level: pass.level,
+        })
+    }
+
+    /// Number of passes applied.
+    pub fn passes_done(&self) -> usize {
+        self.done
+    }
+
+    /// True once the last pass of the stream, or of the wanted level, has been applied.
+    pub fn is_complete(&self) -> bool {
+        self.info.is_some() && self.next_pass().is_none()
+    }
+}
+
+fn out_of_order(chunk: &Chunk) -> DecodeError {
+    DecodeError::Malformed { what: "a chunk out of order", offset: chunk.offset }
+}
+
+/// Passes over a chunk that may be skipped.
+fn skip(chunk: &Chunk) -> Result<(), DecodeError> {
+    if !kind::is_critical(chunk.kind) {
+        return Ok(());
+    }
+    let kind = frame::printable(chunk.kind);
+    Err(DecodeError::Unsupported(format!("chunk '{kind}' at byte {}", chunk.offset)))
+}
+
+/// How to decode.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DecodeOptions {
+    level: Option<u32>,
+    limits: Limits,
+}
+
+impl DecodeOptions {
+    /// All levels, default limits.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Stops at M^`level`, with the precision it has when the next split begins. 0 is the base mesh; a
+    /// level beyond the finest is the finest.
+    pub fn level(mut self, level: u32) -> Self {
+        self.level = Some(level);
+        self
+    }
+
+    /// Sets the limits.
+    pub fn limits(mut self, limits: Limits) -> Self {
+        self.limits = limits;
+        self
+    }
+}
+
+/// Decodes a stream, or what there is of it, in one call.
+///
+/// A stream that ends early gives the mesh of its last complete pass.
+///
+/// # Errors
+/// If the stream is damaged, beyond the limits, or ends before its base mesh.
+pub fn decode(bytes: &[u8], options: DecodeOptions) -> Result<TriMesh, DecodeError> {
+    let mut decoder = Decoder::with_options(options);
+    decoder.push(bytes)?;
+    decoder.mesh().map(|m| m.to_tri_mesh()).ok_or(DecodeError::NoMesh)
+}

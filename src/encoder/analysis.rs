@@ -1,0 +1,159 @@
+//! Down the levels: M^L → M^0.
+
+use super::options::{EncodeOptions, MAX_LEVELS, Progress};
+use super::quantise::Model;
+use crate::TriMesh;
+use crate::descriptors::{self, Window};
+use crate::mesh::Surface;
+use crate::mesh::surface::{next, prev};
+use crate::partition::{Geometry, remove_level};
+use crate::simplify::shrinking::FREE;
+use crate::simplify::{LevelRecord, ShrinkingSurface};
+
+/// Without a wish for levels, the base has at most this many vertices if it can.
+const SMALL_BASE: usize = 40;
+/// Without a wish, a level that would remove a smaller share is not worth a pass.
+const LEAST_SHARE: f64 = 0.02;
+/// Share of an encoder's time that goes into the analysis.
+pub(super) const ANALYSIS_SHARE: f64 = 0.6;
+
+/// All levels of a surface.
+pub(super) struct Hierarchy {
+    /// What each level removed, finest first.
+    pub(super) records: Vec<LevelRecord>,
+    /// The base mesh, renumbered.
+    pub(super) base: Surface,
+    /// For each vertex and each triangle of the base where it stands in the full surface.
+    pub(super) base_vertices: Vec<u32>,
+    pub(super) base_faces: Vec<u32>,
+    /// Mean edge length in steps of the full grid, base first, then each finer level.
+    pub(super) mean_edges: Vec<f64>,
+    pub(super) num_vertices: usize,
+    pub(super) num_faces: usize,
+}
+
+pub(super) fn analyse(
+    mesh: &TriMesh,
+    surface: Surface,
+    model: &Model,
+    options: &EncodeOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Hierarchy {
+    let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
+    let unit_edge = mean_edge_in_units(mesh, model);
+    let geometry = Geometry { grid: &model.cells, positions: &model.positions };
+    let mut shrinking = ShrinkingSurface::new(surface);
+    let mut window = options.window;
+    let mut records = Vec::new();
+    let mut level = Level::collect(&shrinking);
+    let mut mean_edges = vec![level.mean_edge(&model.cells)];
+
+    while wants_level(options, records.len(), shrinking.num_vertices()) {
+        let fraction = 1.0 - shrinking.num_vertices() as f64 / num_vertices as f64;
+        progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });
+        let scores = level.scores(&model.positions, options, &window, unit_edge);
+        let before = shrinking.num_vertices();
+        let record = remove_level(options.partition, &mut shrinking, geometry, &level.vertices, &scores);
+        if record.len() == 0 {
+            break;
+        }
+        let is_small = (record.len() as f64) < LEAST_SHARE * before as f64;
+        records.push(record);
+        level = Level::collect(&shrinking);
+        mean_edges.push(level.mean_edge(&model.cells));
+        window.radius *= options.growth;
+        if is_small && options.levels.is_none() {
+            break;
+        }
+    }
+    mean_edges.reverse();
+    let base = Surface::from_triangles(level.triangles, level.vertices.len());
+    debug_assert!(base.is_ok(), "removal keeps a surface: {base:?}");
+    Hierarchy {
+        records,
+        base: base.unwrap_or_default(),
+        base_vertices: level.vertices,
+        base_faces: level.faces,
+        mean_edges,
+        num_vertices,
+        num_faces,
+    }
+}
+
+fn wants_level(options: &EncodeOptions, done: usize, num_vertices: usize) -> bool {
+    match options.levels {
+        Some(levels) => done < levels as usize,
+        None => done < MAX_LEVELS as usize && num_vertices > SMALL_BASE,
+    }
+}
+
+/// Mean edge of the input in the units of `model.positions`.
+fn mean_edge_in_units(mesh: &TriMesh, model: &Model) -> f64 {
+    let scaled = model.positions.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let original = mesh.positions().iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let _ = (scaled, original);
+    descriptors::mean_edge_length(mesh)
+}
+
+/// The vertices and triangles of one level, renumbered without gaps.
+struct Level {
+    vertices: Vec<u32>,
+    faces: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Level {
+    fn collect(shrinking: &ShrinkingSurface) -> Self {
+        let surface = &shrinking.surface;
+        let mut name = vec![u32::MAX; surface.corner_of.len()];
+        let mut vertices = Vec::with_capacity(shrinking.num_vertices());
+        for (v, n) in name.iter_mut().enumerate() {
+            if shrinking.contains(v as u32) {
+                *n = vertices.len() as u32;
+                vertices.push(v as u32);
+            }
+        }
+        let mut faces = Vec::with_capacity(shrinking.num_faces());
+        let mut triangles = Vec::with_capacity(shrinking.num_faces());
+        for (f, t) in surface.triangles.iter().enumerate() {
+            if *t != FREE {
+                faces.push(f as u32);
+                triangles.push(t.map(|v| name[v as usize]));
+            }
+        }
+        Self { vertices, faces, triangles }
+    }
+
+    fn scores(
+        &mut self,
+        positions: &[[f64; 3]],
+        options: &EncodeOptions,
+        window: &Window,
+        unit: f64,
+    ) -> Vec<f64> {
+        let triangles = std::mem::take(&mut self.triangles);
+        let compact = self.vertices.iter().map(|&v| positions[v as usize]).collect();
+        let mesh = TriMesh::from_valid_parts(compact, triangles);
+        let scores = descriptors::evaluate(options.descriptor, &mesh, window, unit);
+        self.triangles = mesh.into_parts().1;
+        scores
+    }
+
+    /// Mean length of the sides of all triangles, in steps.
+    fn mean_edge(&self, cells: &[[i32; 3]]) -> f64 {
+        let at = |v: u32| cells[self.vertices[v as usize] as usize];
+        let mut sum = 0.0;
+        for t in &self.triangles {
+            for i in 0..3 {
+                let (p, q) = (at(t[i]), at(t[(i + 1) % 3]));
+                sum += (0..3).map(|a| (f64::from(p[a]) - f64::from(q[a])).powi(2)).sum::<f64>().sqrt();
+            }
+        }
+        sum / (3 * self.triangles.len().max(1)) as f64
+    }
+}
+
+/// Corners of a triangle slot in order from `corner`.
+pub(super) fn corners_from(corner: u32) -> [u32; 3] {
+    [corner, next(corner), prev(corner)]
+}

@@ -1,0 +1,88 @@
+//! What the caller may choose, and what comes back.
+
+use crate::descriptors::{Descriptor, Window};
+use crate::mesh::repair::RepairReport;
+use crate::{EncodeError, Partition, StreamInfo};
+
+/// How to encode. `Default` gives the defaults named below.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct EncodeOptions {
+    /// Saliency of vertices. Default harris3d.
+    pub descriptor: Descriptor,
+    /// Window of the descriptor at the finest level. Default 4 rings, radius 3 mean edges.
+    pub window: Window,
+    /// Factor of the radius from each level to the next coarser one. Default 1.5.
+    pub growth: f64,
+    /// Bits per coordinate, 1 to 30. Default 12.
+    pub quantization: u32,
+    /// Number of levels above the base mesh; `None` goes on until the base is small. Default `None`.
+    pub levels: Option<u32>,
+    /// How odd vertices are chosen and removed. Default balanced.
+    pub partition: Partition,
+    /// Grid steps to the mean edge of a level, from which its precision follows: fewer bits early
+    /// make better prefixes, more bits early sometimes make smaller files. Default 12.
+    pub steps_per_edge: f64,
+}
+
+impl Default for EncodeOptions {
+    fn default() -> Self {
+        Self {
+            descriptor: Descriptor::default(),
+            window: Window::default(),
+            growth: 1.5,
+            quantization: 12,
+            levels: None,
+            partition: Partition::default(),
+            steps_per_edge: 12.0,
+        }
+    }
+}
+
+/// Most levels that can be asked for.
+pub(super) const MAX_LEVELS: u32 = 128;
+
+impl EncodeOptions {
+    pub(super) fn check(&self) -> Result<(), EncodeError> {
+        let fail = |option, value: String, allowed| Err(EncodeError::Option { option, value, allowed });
+        if !(1..=30).contains(&self.quantization) {
+            return fail("quantization", self.quantization.to_string(), "1 to 30 bits");
+        }
+        if self.levels.is_some_and(|n| n > MAX_LEVELS) {
+            return fail("levels", self.levels.unwrap_or(0).to_string(), "0 to 128");
+        }
+        if !(1..=64).contains(&self.window.rings) {
+            return fail("rings", self.window.rings.to_string(), "1 to 64");
+        }
+        if !(self.window.radius > 0.0 && self.window.radius <= 1e6) {
+            return fail("radius", self.window.radius.to_string(), "above 0, at most 1000000 mean edges");
+        }
+        if !(1.0..=16.0).contains(&self.growth) {
+            return fail("growth", self.growth.to_string(), "1 to 16");
+        }
+        if !(0.5..=1e9).contains(&self.steps_per_edge) {
+            return fail("steps per edge", self.steps_per_edge.to_string(), "0.5 to 1e9");
+        }
+        Ok(())
+    }
+}
+
+/// A stream and how it came about.
+#[derive(Clone, Debug)]
+pub struct Encoded {
+    /// The stream.
+    pub bytes: Vec<u8>,
+    /// Its levels and passes.
+    pub info: StreamInfo,
+    /// What had to be cut or dropped.
+    pub repair: RepairReport,
+}
+
+/// How far an encoder is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// What it does now.
+    pub stage: &'static str,
+    /// Share of the whole work done, 0 to 1.
+    pub fraction: f64,
+}

@@ -1,0 +1,244 @@
+//! Up the levels: the decoder's own steps, with the truth at hand.
+
+use super::analysis::{ANALYSIS_SHARE, Hierarchy, corners_from};
+use super::options::{EncodeOptions, Progress};
+use super::schedule::{Schedule, Step};
+use crate::bitstream::chunk::{self, kind};
+use crate::bitstream::header::{self, Action, Grid, MAX_VERTICES_PER_BYTE, Pass, Provenance};
+use crate::bitstream::range_coder::RangeEncoder;
+use crate::mesh::surface::{NO_CORNER, next, prev};
+use crate::passes::GridMesh;
+use crate::passes::base::{self, BaseTarget};
+use crate::passes::connectivity::{self, ConnectivityModels, ConnectivityTarget, NOT_IN_PATCH};
+use crate::passes::coordinates::{self, CoordinateModels};
+use crate::passes::patch::{CLOSED, Patches, Star, StarBuilder};
+use crate::passes::refine::{self, RefineModels};
+use crate::simplify::LevelRecord;
+use std::collections::HashMap;
+
+/// Writes the stream. `cells` are those of the full surface at full precision.
+pub(super) fn write(
+    hierarchy: &Hierarchy,
+    cells: &[[i32; 3]],
+    grid: &Grid,
+    schedule: &Schedule,
+    options: &EncodeOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Vec<u8> {
+    let mut writer = PassWriter::new(hierarchy, cells, grid.precision, schedule.base_precision);
+    for step in &schedule.steps {
+        let fraction = writer.mesh.positions.len() as f64 / hierarchy.num_vertices as f64;
+        progress(Progress { stage: "passes", fraction: ANALYSIS_SHARE + (1.0 - ANALYSIS_SHARE) * fraction });
+        match *step {
+            Step::Split(record) => writer.split(&hierarchy.records[record]),
+            Step::Refine => writer.refine(),
+        }
+    }
+    debug_assert_eq!(writer.mesh.surface.triangles.len(), hierarchy.num_faces);
+    assemble(grid, hierarchy, options, &writer.passes)
+}
+
+/// Frames headers and passes.
+fn assemble(
+    grid: &Grid,
+    hierarchy: &Hierarchy,
+    options: &EncodeOptions,
+    passes: &[(Pass, Vec<u8>)],
+) -> Vec<u8> {
+    let mut bytes = chunk::SIGNATURE.to_vec();
+    bytes.push(chunk::VERSION);
+    chunk::write(&mut bytes, kind::HEADER, &grid.write());
+    if !hierarchy.records.is_empty() {
+        let provenance = Provenance {
+            descriptor: options.descriptor as u8,
+            partition: options.partition as u8,
+            rings: options.window.rings,
+            radius: options.window.radius,
+            growth: options.growth,
+        };
+        chunk::write(&mut bytes, kind::PROVENANCE, &provenance.write());
+    }
+    let rows: Vec<Pass> = passes.iter().map(|(row, _)| *row).collect();
+    chunk::write(&mut bytes, kind::PASSES, &header::write_passes(&rows));
+    for (row, payload) in passes {
+        let kind = match row.action {
+            Action::Base { .. } => kind::BASE,
+            Action::Split => kind::SPLIT,
+            Action::Refine => kind::REFINE,
+        };
+        chunk::write(&mut bytes, kind, payload);
+    }
+    bytes
+}
+
+/// The decoder's state, and how its numbering maps to that of the full surface.
+struct PassWriter<'a> {
+    cells: &'a [[i32; 3]],
+    full_precision: u32,
+    precision: u32,
+    mesh: GridMesh,
+    /// Vertex of the full surface that each vertex is.
+    vertex_source: Vec<u32>,
+    /// Slot of the full surface that each triangle has.
+    face_source: Vec<u32>,
+    connectivity: ConnectivityModels,
+    coordinates: CoordinateModels,
+    refine: RefineModels,
+    /// Scratch: patch of each slot of the full surface.
+    patch_of_slot: Vec<u32>,
+    passes: Vec<(Pass, Vec<u8>)>,
+}
+
+impl<'a> PassWriter<'a> {
+    fn new(hierarchy: &Hierarchy, cells: &'a [[i32; 3]], full_precision: u32, precision: u32) -> Self {
+        let hidden = full_precision - precision;
+        let positions: Vec<[i32; 3]> =
+            hierarchy.base_vertices.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)).collect();
+        let target = BaseTarget { surface: &hierarchy.base, positions: &positions };
+        let (num_vertices, num_faces) = (positions.len(), hierarchy.base.triangles.len());
+        let mut coder = RangeEncoder::new();
+        let coded = base::code(&mut coder, num_vertices, num_faces, precision, Some(&target));
+        let coded = expect_sound(coded);
+        let mut writer = Self {
+            cells,
+            full_precision,
+            precision,
+            mesh: coded.mesh,
+            vertex_source: coded.vertex_source.iter().map(|&v| hierarchy.base_vertices[v as usize]).collect(),
+            face_source: coded
+                .corner_source
+                .iter()
+                .map(|&c| hierarchy.base_faces[(c / 3) as usize])
+                .collect(),
+            connectivity: ConnectivityModels::new(),
+            coordinates: CoordinateModels::new(),
+            refine: RefineModels::new(),
+            patch_of_slot: vec![NOT_IN_PATCH; hierarchy.num_faces],
+            passes: Vec::new(),
+        };
+        let more_vertices = hierarchy.num_vertices - num_vertices;
+        writer.mesh.reserve(more_vertices, hierarchy.num_faces - num_faces);
+        let row = Pass {
+            action: Action::Base { precision },
+            vertices: num_vertices as u32,
+            faces: num_faces as u32,
+            bytes: 0,
+        };
+        writer.finish_pass(row, num_vertices.max(num_faces), coder);
+        writer
+    }
+
+    fn finish_pass(&mut self, mut row: Pass, touched: usize, coder: RangeEncoder) {
+        let mut payload = coder.finish();
+        // A decoder refuses more vertices than the bytes could plausibly hold.
+        let least = touched.div_ceil(MAX_VERTICES_PER_BYTE as usize).saturating_sub(1);
+        payload.resize(payload.len().max(least), 0);
+        row.bytes = payload.len() as u32;
+        self.passes.push((row, payload));
+    }
+
+    fn refine(&mut self) {
+        self.precision += 1;
+        let hidden = self.full_precision - self.precision;
+        let target: Vec<[i32; 3]> =
+            self.vertex_source.iter().map(|&v| self.cells[v as usize].map(|c| c >> hidden)).collect();
+        let mut coder = RangeEncoder::new();
+        refine::code(&mut coder, &mut self.refine, &mut self.mesh, Some(&target));
+        debug_assert_eq!(self.mesh.positions, target);
+        let row = Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 0 };
+        self.finish_pass(row, target.len(), coder);
+    }
+
+    fn split(&mut self, record: &LevelRecord) {
+        let target = self.connectivity_target(record);
+        let mut coder = RangeEncoder::new();
+        let patches =
+            connectivity::code(&mut coder, &mut self.connectivity, &self.mesh, record.len(), Some(&target));
+        let patches = expect_sound(patches);
+        let odd: Vec<u32> = (0..patches.len()).map(|j| odd_of(&target, &patches, j)).collect();
+        drop(target);
+
+        let num_coarse = self.mesh.positions.len();
+        let num_faces = self.mesh.surface.triangles.len();
+        let mut builder = StarBuilder::new(num_coarse);
+        for (j, &odd) in odd.iter().enumerate() {
+            let star = expect_sound(builder.restore(&mut self.mesh.surface, &patches, j));
+            let removed = record.get(odd as usize);
+            self.face_source.resize(self.mesh.surface.triangles.len(), 0);
+            name_faces(star, &removed, &self.vertex_source, &mut self.face_source);
+        }
+        let hidden = self.full_precision - self.precision;
+        self.vertex_source.extend(odd.iter().map(|&o| record.get(o as usize).vertex));
+        let wanted: Vec<[i32; 3]> = self.vertex_source[num_coarse..]
+            .iter()
+            .map(|&v| self.cells[v as usize].map(|c| c >> hidden))
+            .collect();
+        let (models, mesh) = (&mut self.coordinates, &mut self.mesh);
+        expect_sound(coordinates::code(&mut coder, models, mesh, &patches, self.precision, Some(&wanted)));
+        let row = Pass {
+            action: Action::Split,
+            vertices: record.len() as u32,
+            faces: (self.mesh.surface.triangles.len() - num_faces) as u32,
+            bytes: 0,
+        };
+        self.finish_pass(row, record.len(), coder);
+    }
+
+    /// Translates a record into the decoder's numbering.
+    fn connectivity_target(&mut self, record: &LevelRecord) -> ConnectivityTarget {
+        let mut open: HashMap<(u32, u32), u32> = HashMap::new();
+        for (odd, removed) in record.iter().enumerate() {
+            removed.patch().iter().for_each(|&slot| self.patch_of_slot[slot as usize] = odd as u32);
+            if !removed.is_closed() {
+                let last = removed.ring[removed.ring.len() - 1];
+                open.insert((last, removed.ring[0]), odd as u32);
+            }
+        }
+        let patch_of_face = self.face_source.iter().map(|&s| self.patch_of_slot[s as usize]).collect();
+        record
+            .iter()
+            .for_each(|r| r.patch().iter().for_each(|&s| self.patch_of_slot[s as usize] = NOT_IN_PATCH));
+
+        let mut target = ConnectivityTarget { patch_of_face, ..Default::default() };
+        let surface = &self.mesh.surface;
+        if !open.is_empty() {
+            for corner in (0..surface.opposite.len() as u32).filter(|&c| surface.across(c) == NO_CORNER) {
+                let [from, to] =
+                    [next(corner), prev(corner)].map(|c| self.vertex_source[surface.vertex(c) as usize]);
+                if let Some(&odd) = open.get(&(from, to)) {
+                    let is_ear = record.get(odd as usize).patch().is_empty();
+                    let map = if is_ear { &mut target.ear_at } else { &mut target.patch_open_at };
+                    map.insert(corner, odd);
+                }
+            }
+        }
+        target
+    }
+}
+
+/// The record entry that a patch stands for.
+fn odd_of(target: &ConnectivityTarget, patches: &Patches, patch: usize) -> u32 {
+    match patches.faces(patch).first() {
+        Some(&face) => target.patch_of_face[face as usize],
+        None => target.ear_at[&patches.edges(patch)[0]],
+    }
+}
+
+/// Notes which slots of the full surface the triangles of a star have.
+fn name_faces(
+    star: &Star,
+    removed: &crate::simplify::record::Removed,
+    vertex_source: &[u32],
+    face_source: &mut [u32],
+) {
+    let first = vertex_source[star.ring[0] as usize];
+    let shift = removed.ring.iter().position(|&v| v == first).unwrap_or(0);
+    for (i, &face) in star.faces.iter().enumerate() {
+        face_source[face as usize] = removed.faces[(shift + i) % removed.faces.len()];
+    }
+}
+
+/// The passes fail on malformed payloads only, and an encoder reads none.
+fn expect_sound<T>(result: Result<T, crate::passes::Malformed>) -> T {
+    result.unwrap_or_else(|e| unreachable!("the encoder made a stream it refuses: {}", e.0))
+}

@@ -1,0 +1,75 @@
+//! What can go wrong, by who can do something about it.
+
+use thiserror::Error;
+
+/// Why a stream does not decode.
+///
+/// A stream that ends early is no error: it is a coarser mesh.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DecodeError {
+    /// The bytes do not begin an `lwc` stream.
+    #[error("not an lwc stream: it does not begin with the signature \"LWC\"")]
+    NotAStream,
+    /// The stream needs a newer decoder.
+    #[error("unsupported stream: {0}")]
+    Unsupported(String),
+    /// The bytes of a chunk are not those that were written.
+    #[error("damaged stream: chunk '{kind}' at byte {offset} fails its checksum")]
+    Checksum {
+        /// Kind of the chunk.
+        kind: char,
+        /// Where it begins.
+        offset: u64,
+    },
+    /// The bytes follow no syntax that an encoder writes.
+    #[error("malformed stream: {what} (chunk at byte {offset})")]
+    Malformed {
+        /// What is wrong.
+        what: &'static str,
+        /// Where the chunk begins.
+        offset: u64,
+    },
+    /// The mesh is larger than the caller allows.
+    #[error("limit exceeded: {what} needs {needed}, {allowed} allowed")]
+    Limit {
+        /// Which limit.
+        what: &'static str,
+        /// What the stream asks for.
+        needed: u64,
+        /// What [`Limits`](crate::Limits) allow.
+        allowed: u64,
+    },
+    /// The decoder has failed before and takes no more bytes.
+    #[error("the decoder has failed already")]
+    Failed,
+    /// There were not even enough bytes for the base mesh.
+    #[error("the stream ends before its base mesh is complete")]
+    NoMesh,
+}
+
+/// Why a mesh cannot be encoded.
+#[cfg(feature = "encoder")]
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum EncodeError {
+    /// There is nothing to encode.
+    #[error("the mesh has no usable triangle")]
+    NoTriangles,
+    /// An option is out of range.
+    #[error("{option} is {value}, but must be {allowed}")]
+    Option {
+        /// Name of the option.
+        option: &'static str,
+        /// What was given.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// The mesh is too large for the format.
+    #[error("the mesh has {0} vertices or faces, more than the format can hold")]
+    TooLarge(usize),
+    /// The coordinates span more than double precision can hold.
+    #[error("the bounding box of the mesh overflows double precision")]
+    BoundingBox,
+}

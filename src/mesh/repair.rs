@@ -1,0 +1,198 @@
+//! From any index soup to a [`Surface`]: unusable faces dropped, non-manifold places cut into
+//! sheets by repeating vertices.
+
+use super::build::EdgeIndex;
+use super::surface::{NO_CORNER, Surface, next, prev};
+use super::tri_mesh::TriMesh;
+
+/// What had to be changed so that a mesh became an oriented surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RepairReport {
+    /// Triangles dropped because they name a vertex twice.
+    pub degenerate_faces: usize,
+    /// Vertices dropped because no triangle uses them.
+    pub isolated_vertices: usize,
+    /// Vertices repeated to cut the surface where more than two triangles meet at an edge, where
+    /// neighbours run opposite ways round, or where several fans meet at a vertex.
+    pub repeated_vertices: usize,
+}
+
+/// A mesh cut into an oriented surface.
+pub(crate) struct Repaired {
+    pub(crate) surface: Surface,
+    /// For each vertex of `surface` the vertex of the mesh it stands for.
+    pub(crate) source: Vec<u32>,
+    pub(crate) report: RepairReport,
+}
+
+/// Cuts `mesh` into sheets. Faces keep their order and their orientation.
+pub(crate) fn repair(mesh: &TriMesh) -> Repaired {
+    let is_usable = |t: &&[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    let triangles: Vec<[u32; 3]> = mesh.triangles().iter().filter(is_usable).copied().collect();
+    let degenerate_faces = mesh.num_triangles() - triangles.len();
+
+    let mut opposite = pair_edges(&triangles, mesh.num_vertices());
+    let (surface, source) = loop {
+        let (cut, source) = name_fans(&triangles, &opposite);
+        let clashing = clashing_faces(&cut, source.len());
+        if clashing.is_empty() {
+            // Fans are single and directed edges unique by now.
+            if let Ok(surface) = Surface::from_triangles(cut, source.len()) {
+                break (surface, source);
+            }
+            debug_assert!(false, "a cut mesh is an oriented surface");
+            (0..triangles.len() as u32).for_each(|face| detach(&mut opposite, face));
+            continue;
+        }
+        for face in clashing {
+            detach(&mut opposite, face);
+        }
+    };
+
+    let mut used = vec![false; mesh.num_vertices()];
+    source.iter().for_each(|&v| used[v as usize] = true);
+    let used = used.iter().filter(|&&u| u).count();
+    let report = RepairReport {
+        degenerate_faces,
+        isolated_vertices: mesh.num_vertices() - used,
+        repeated_vertices: source.len() - used,
+    };
+    Repaired { surface, source, report }
+}
+
+/// Matches every half-edge with one of opposite direction, in the order of the faces.
+fn pair_edges(triangles: &[[u32; 3]], num_vertices: usize) -> Vec<u32> {
+    let edges = EdgeIndex::new(triangles, num_vertices);
+    let vertex = |corner: u32| triangles[(corner / 3) as usize][(corner % 3) as usize];
+    let mut opposite = vec![NO_CORNER; 3 * triangles.len()];
+    for corner in 0..opposite.len() as u32 {
+        let (from, to) = (vertex(next(corner)), vertex(prev(corner)));
+        if from > to {
+            continue;
+        }
+        let forward = edges.facing(triangles, from, to);
+        if forward.first() != Some(&corner) {
+            continue;
+        }
+        for (&a, &b) in forward.iter().zip(edges.facing(triangles, to, from)) {
+            opposite[a as usize] = b;
+            opposite[b as usize] = a;
+        }
+    }
+    opposite
+}
+
+/// Gives each fan of faces a vertex of its own. The first fan at a vertex comes first, the order
+/// is that of the faces.
+fn name_fans(triangles: &[[u32; 3]], opposite: &[u32]) -> (Vec<[u32; 3]>, Vec<u32>) {
+    let mut named = vec![[u32::MAX; 3]; triangles.len()];
+    let mut source = Vec::new();
+    for corner in 0..opposite.len() as u32 {
+        let (f, i) = ((corner / 3) as usize, (corner % 3) as usize);
+        if named[f][i] != u32::MAX {
+            continue;
+        }
+        let name = source.len() as u32;
+        source.push(triangles[f][i]);
+        for step_over in [next as fn(u32) -> u32, prev] {
+            let mut c = corner;
+            loop {
+                named[(c / 3) as usize][(c % 3) as usize] = name;
+                let o = opposite[step_over(c) as usize];
+                if o == NO_CORNER || step_over(o) == corner {
+                    break;
+                }
+                c = step_over(o);
+            }
+        }
+    }
+    (named, source)
+}
+
+/// Faces with a directed edge that an earlier face has already.
+fn clashing_faces(triangles: &[[u32; 3]], num_vertices: usize) -> Vec<u32> {
+    let edges = EdgeIndex::new(triangles, num_vertices);
+    let mut clashing: Vec<u32> = (0..3 * triangles.len() as u32)
+        .filter(|&corner| {
+            let t = triangles[(corner / 3) as usize];
+            let (from, to) = (t[(next(corner) % 3) as usize], t[(prev(corner) % 3) as usize]);
+            edges.facing(triangles, from, to).first() != Some(&corner)
+        })
+        .map(|corner| corner / 3)
+        .collect();
+    clashing.dedup();
+    clashing
+}
+
+/// Cuts the three edges of a face.
+fn detach(opposite: &mut [u32], face: u32) {
+    for corner in 3 * face..3 * face + 3 {
+        let o = std::mem::replace(&mut opposite[corner as usize], NO_CORNER);
+        if o != NO_CORNER {
+            opposite[o as usize] = NO_CORNER;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh(num_vertices: usize, triangles: &[[u32; 3]]) -> TriMesh {
+        let positions = (0..num_vertices).map(|i| [i as f64, (i * i) as f64, 1.0]).collect();
+        TriMesh::new(positions, triangles.to_vec()).unwrap()
+    }
+
+    fn report(num_vertices: usize, triangles: &[[u32; 3]]) -> RepairReport {
+        let mesh = mesh(num_vertices, triangles);
+        let repaired = repair(&mesh);
+        // The same oriented faces come out, in order, whatever was cut.
+        let back = repaired.surface.triangles.iter().map(|t| t.map(|v| repaired.source[v as usize]));
+        let kept = mesh.triangles().iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+        assert!(back.eq(kept.copied()));
+        repaired.report
+    }
+
+    #[test]
+    fn a_clean_mesh_is_left_alone() {
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+        assert_eq!(report(4, &tetrahedron), RepairReport::default());
+    }
+
+    #[test]
+    fn unusable_things_are_counted() {
+        let r = report(6, &[[0, 1, 2], [1, 1, 2], [3, 3, 3]]);
+        assert_eq!((r.degenerate_faces, r.isolated_vertices, r.repeated_vertices), (2, 3, 0));
+    }
+
+    #[test]
+    fn a_third_face_at_an_edge_becomes_a_sheet() {
+        assert_eq!(report(5, &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]).repeated_vertices, 2);
+    }
+
+    #[test]
+    fn two_fans_at_a_vertex_are_cut() {
+        assert_eq!(report(5, &[[0, 1, 2], [0, 3, 4]]).repeated_vertices, 1);
+    }
+
+    #[test]
+    fn repeated_and_flipped_faces_become_sheets() {
+        assert_eq!(report(3, &[[0, 1, 2], [0, 1, 2]]).repeated_vertices, 3);
+        assert_eq!(report(4, &[[0, 1, 2], [1, 2, 3]]).repeated_vertices, 2);
+        // Both sides of one triangle are a closed surface.
+        assert_eq!(report(3, &[[0, 1, 2], [0, 2, 1]]).repeated_vertices, 0);
+    }
+
+    #[test]
+    fn a_moebius_strip_opens() {
+        let n = 9;
+        let strip: Vec<[u32; 3]> = (0..n)
+            .flat_map(|i| {
+                let (a, b) = (2 * i, 2 * i + 1);
+                let (c, d) = if i + 1 == n { (1, 0) } else { (2 * i + 2, 2 * i + 3) };
+                [[a, c, b], [b, c, d]]
+            })
+            .collect();
+        assert!(report(2 * n as usize, &strip).repeated_vertices > 0);
+    }
+}

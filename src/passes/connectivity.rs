@@ -1,0 +1,382 @@
+//! Where the odd vertices of a level go (`format/SPEC.md`, section 7.2): the faces of the coarse
+//! mesh are walked from gate to gate and grouped into patches.
+
+use super::patch::{CLOSED, Patches};
+use super::{GridMesh, Malformed};
+use crate::bitstream::mixer::{MixedBit, PlainBits};
+use crate::bitstream::range_coder::BitCoder;
+use crate::bitstream::tables::Tables;
+use crate::mesh::Surface;
+use crate::mesh::surface::{NO_CORNER, next, prev};
+use std::collections::{HashMap, VecDeque};
+
+/// What the encoder wants written, in the numbering of the coarse mesh.
+#[derive(Default)]
+pub(crate) struct ConnectivityTarget {
+    /// Patch that a face belongs to, or [`NOT_IN_PATCH`].
+    pub(crate) patch_of_face: Vec<u32>,
+    /// Patch whose hole opens over the boundary edge that a corner faces.
+    pub(crate) patch_open_at: HashMap<u32, u32>,
+    /// Ear along the boundary edge that a corner faces.
+    pub(crate) ear_at: HashMap<u32, u32>,
+}
+
+/// Mark of a face that belongs to no patch.
+pub(crate) const NOT_IN_PATCH: u32 = u32::MAX;
+
+/// Adaptive models, kept from level to level.
+pub(crate) struct ConnectivityModels {
+    in_patch: MixedBit<5>,
+    grow: MixedBit<6>,
+    ear: PlainBits,
+    open: PlainBits,
+}
+
+const LIMIT: u32 = 255;
+/// Longest patch that contexts tell apart.
+const MAX_SIZE: usize = 6;
+const GROW_SETS: usize = 2 * MAX_SIZE;
+
+impl ConnectivityModels {
+    pub(crate) fn new() -> Self {
+        Self {
+            in_patch: MixedBit::new([64 * 3 * 16, 27 * 512, 512 * 3, 27 * 64, 4 * 8 * 8 * 3], 8, 0.0, LIMIT),
+            grow: MixedBit::new(
+                [
+                    MAX_SIZE * 16 * 3,
+                    MAX_SIZE * 64 * 4,
+                    MAX_SIZE * 64 * 4,
+                    MAX_SIZE * 64 * 5,
+                    MAX_SIZE * 64,
+                    MAX_SIZE * 16 * 8,
+                ],
+                GROW_SETS,
+                0.0,
+                LIMIT,
+            ),
+            ear: PlainBits::new(3),
+            open: PlainBits::new(2),
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Face {
+    Undecided = 0,
+    Kept = 1,
+    InPatch = 2,
+}
+
+/// Codes the patches of one level: exactly `count` of them when decoding.
+pub(crate) fn code<B: BitCoder>(
+    coder: &mut B,
+    models: &mut ConnectivityModels,
+    mesh: &GridMesh,
+    count: usize,
+    target: Option<&ConnectivityTarget>,
+) -> Result<Patches, Malformed> {
+    let mut walk = Walk::new(mesh, models, count, target);
+    walk.code_ears(coder)?;
+    walk.code_patches(coder)?;
+    if walk.patches.len() != count {
+        return Err(Malformed("a level has fewer vertices than announced"));
+    }
+    Ok(walk.patches)
+}
+
+struct Walk<'a> {
+    surface: &'a Surface,
+    positions: &'a [[i32; 3]],
+    models: &'a mut ConnectivityModels,
+    target: Option<&'a ConnectivityTarget>,
+    count: usize,
+    patches: Patches,
+    faces: Vec<Face>,
+    /// Patches that touch each vertex so far.
+    touched: Vec<u8>,
+    /// Faces at each vertex that are not decided yet.
+    undecided: Vec<u32>,
+    /// What the patches so far will add to the valence of each vertex.
+    gained: Vec<i16>,
+    gates: VecDeque<u32>,
+    /// Edges of the growing patch still to look at.
+    frontier: Vec<u32>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(
+        mesh: &'a GridMesh,
+        models: &'a mut ConnectivityModels,
+        count: usize,
+        target: Option<&'a ConnectivityTarget>,
+    ) -> Self {
+        let surface = &mesh.surface;
+        let num_vertices = surface.corner_of.len();
+        let mut undecided = vec![0; num_vertices];
+        surface.triangles.iter().flatten().for_each(|&v| undecided[v as usize] += 1);
+        Self {
+            surface,
+            positions: &mesh.positions,
+            models,
+            target,
+            count,
+            patches: Patches::default(),
+            faces: vec![Face::Undecided; surface.triangles.len()],
+            touched: vec![0; num_vertices],
+            undecided,
+            gained: vec![0; num_vertices],
+            gates: VecDeque::new(),
+            frontier: Vec::new(),
+        }
+    }
+
+    /// Vertices of valence two that hang on a boundary edge, in the order of the corners.
+    fn code_ears<B: BitCoder>(&mut self, coder: &mut B) -> Result<(), Malformed> {
+        for corner in 0..self.surface.opposite.len() as u32 {
+            if self.surface.across(corner) != NO_CORNER {
+                continue;
+            }
+            let ends = [next(corner), prev(corner)].map(|c| self.surface.vertex(c) as usize);
+            let context = ends.iter().filter(|&&v| self.touched[v] > 0).count();
+            let wanted = self.target.is_some_and(|t| t.ear_at.contains_key(&corner));
+            if self.models.ear.code(coder, context, wanted) {
+                self.check_room()?;
+                self.patches.push_edge(self.surface, corner);
+                self.patches.finish(0);
+                for v in ends {
+                    self.touched[v] = self.touched[v].saturating_add(1);
+                    self.gained[v] = self.gained[v].saturating_add(1);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_room(&self) -> Result<(), Malformed> {
+        if self.patches.len() == self.count {
+            return Err(Malformed("a level has more vertices than announced"));
+        }
+        Ok(())
+    }
+
+    fn code_patches<B: BitCoder>(&mut self, coder: &mut B) -> Result<(), Malformed> {
+        for seed in 0..self.faces.len() as u32 {
+            if self.faces[seed as usize] != Face::Undecided {
+                continue;
+            }
+            self.decide(coder, 3 * seed, true)?;
+            while let Some(gate) = self.gates.pop_front() {
+                let beyond = self.surface.across(gate);
+                if beyond != NO_CORNER && self.faces[(beyond / 3) as usize] == Face::Undecided {
+                    self.decide(coder, beyond, false)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Codes whether the face of `corner` is in a patch, and the patch if so. `corner` faces the
+    /// gate, unless the face is a seed.
+    fn decide<B: BitCoder>(&mut self, coder: &mut B, corner: u32, is_seed: bool) -> Result<(), Malformed> {
+        let face = corner / 3;
+        let wanted = self.target.map_or(NOT_IN_PATCH, |t| t.patch_of_face[face as usize]);
+        let (contexts, set) = self.face_contexts(corner, is_seed);
+        let tables = Tables::get();
+        if !self.models.in_patch.code(coder, tables, contexts, &[], set, wanted != NOT_IN_PATCH) {
+            self.mark(face, Face::Kept);
+            self.gates.push_back(next(corner));
+            self.gates.push_back(prev(corner));
+            if is_seed {
+                self.gates.push_back(corner);
+            }
+            return Ok(());
+        }
+        self.check_room()?;
+        self.take(face);
+        self.frontier.extend([prev(corner), next(corner)]);
+        if is_seed {
+            self.frontier.push(corner);
+        } else {
+            self.patches.push_edge(self.surface, corner);
+        }
+        while let Some(inside) = self.frontier.pop() {
+            if self.code_growth(coder, inside, wanted) {
+                let entered = self.surface.across(inside);
+                self.take(entered / 3);
+                self.frontier.extend([prev(entered), next(entered)]);
+            } else {
+                self.patches.push_edge(self.surface, inside);
+            }
+        }
+        self.finish_patch(coder, wanted)
+    }
+
+    fn mark(&mut self, face: u32, state: Face) {
+        self.faces[face as usize] = state;
+        for v in self.surface.triangles[face as usize] {
+            self.undecided[v as usize] -= 1;
+        }
+    }
+
+    fn take(&mut self, face: u32) {
+        self.mark(face, Face::InPatch);
+        self.patches.push_face(face);
+        for v in self.surface.triangles[face as usize] {
+            let gained = &mut self.gained[v as usize];
+            *gained = gained.saturating_sub(1);
+        }
+    }
+
+    /// Codes whether the patch goes on across the edge that `inside` faces.
+    fn code_growth<B: BitCoder>(&mut self, coder: &mut B, inside: u32, wanted: u32) -> bool {
+        let beyond = self.surface.across(inside);
+        if beyond == NO_CORNER || self.faces[(beyond / 3) as usize] != Face::Undecided {
+            return false;
+        }
+        let grows = self.target.is_some_and(|t| t.patch_of_face[(beyond / 3) as usize] == wanted);
+        let (contexts, set) = self.growth_contexts(inside, beyond);
+        self.models.grow.code(coder, Tables::get(), contexts, &[], set, grows)
+    }
+
+    /// Codes over which edge the hole is open, and passes the polygon's edges on as gates.
+    fn finish_patch<B: BitCoder>(&mut self, coder: &mut B, wanted: u32) -> Result<(), Malformed> {
+        let mut open_edge = CLOSED;
+        let (edges, _) = self.patches.unfinished();
+        for (i, &corner) in edges.iter().enumerate() {
+            if self.surface.across(corner) == NO_CORNER && !self.patches.has_ear(corner) {
+                let opens = self.target.is_some_and(|t| t.patch_open_at.get(&corner) == Some(&wanted));
+                if self.models.open.code(coder, 0, opens) {
+                    open_edge = i as u32;
+                    break;
+                }
+            }
+        }
+        let degree = edges.len();
+        for (i, &corner) in edges.iter().enumerate() {
+            self.gates.push_back(corner);
+            let v = self.surface.vertex(next(corner)) as usize;
+            self.touched[v] = self.touched[v].saturating_add(1);
+            let is_end =
+                open_edge != CLOSED && (i as u32 == open_edge || i == (open_edge as usize + 1) % degree);
+            self.gained[v] = self.gained[v].saturating_add(if is_end { 1 } else { 2 });
+        }
+        self.patches.finish(open_edge);
+        Ok(())
+    }
+
+    fn live_valence(&self, v: usize) -> i32 {
+        self.surface.valence[v] as i32 + i32::from(self.gained[v])
+    }
+
+    /// 0 if a patch touches `v`; else 1 to 3, the fewer faces are left the higher: a maximal set of
+    /// removed vertices leaves no vertex untouched.
+    fn urgency(&self, v: usize) -> usize {
+        match (self.touched[v], self.undecided[v]) {
+            (1.., _) => 0,
+            (0, 1) => 3,
+            (0, 2) => 2,
+            _ => 1,
+        }
+    }
+
+    fn state_across(&self, corner: u32) -> usize {
+        match self.surface.across(corner) {
+            NO_CORNER => 3,
+            o => self.faces[(o / 3) as usize] as usize,
+        }
+    }
+
+    fn face_contexts(&self, corner: u32, is_seed: bool) -> ([usize; 5], usize) {
+        let [a, b, tip] = [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c) as usize);
+        let source = if is_seed { 2 } else { self.state_across(corner).saturating_sub(1).min(1) };
+        let around = self.state_across(next(corner)) * 4 + self.state_across(prev(corner));
+        let urgency = [a, b, tip].map(|v| self.urgency(v));
+        let urgent = urgency[0] * 16 + urgency[1] * 4 + urgency[2];
+        let touched = [a, b, tip].iter().fold(0, |t, &v| t * 3 + usize::from(self.touched[v].min(2)));
+        let live = [a, b, tip].iter().fold(0, |t, &v| t * 8 + bucket(self.live_valence(v), 3));
+        let coarse = [a, b, tip].iter().fold(0, |t, &v| t * 8 + bucket(self.surface.valence[v] as i32, 3));
+        let left = [a, b, tip].iter().fold(0, |t, &v| t * 4 + (self.undecided[v] as usize).min(4) - 1);
+
+        let [pa, pb, pt] = [a, b, tip].map(|v| self.positions[v]);
+        let gate_length = squared_distance(pa, pb);
+        let sides = squared_distance(pb, pt) + squared_distance(pt, pa);
+        let shape = share(gate_length * 2.0, sides, 8);
+        let beyond = self.surface.across(corner);
+        let fold = if beyond == NO_CORNER {
+            7
+        } else {
+            let outside = self.positions[self.surface.vertex(beyond) as usize];
+            share(squared_distance(outside, pt), gate_length * 3.0, 8)
+        };
+        let contexts = [
+            (urgent * 3 + source) * 16 + around,
+            touched * 512 + live,
+            coarse * 3 + source,
+            touched * 64 + left,
+            (shape * 8 + fold) * 12 + urgency[2] * 3 + source,
+        ];
+        (contexts, urgency.iter().copied().max().unwrap_or(0) * 2 + usize::from(source == 1))
+    }
+
+    fn growth_contexts(&self, inside: u32, beyond: u32) -> ([usize; 6], usize) {
+        let (_, faces) = self.patches.unfinished();
+        let size = faces.len().min(MAX_SIZE) - 1;
+        let [a, b, tip, far] =
+            [next(inside), prev(inside), inside, beyond].map(|c| self.surface.vertex(c) as usize);
+        let [va, vb, vt, vf] = [a, b, tip, far].map(|v| self.live_valence(v));
+        let balance = bucket(va + vb - vt - vf, -7).min(15);
+        let pair = |x: i32, y: i32| bucket(x, 2) * 8 + bucket(y, 2);
+        let (low, high) = (va.min(vb), va.max(vb));
+        let around = self.state_across(next(beyond)) * 4 + self.state_across(prev(beyond));
+
+        let [pa, pb, pt, pf] = [a, b, tip, far].map(|v| self.positions[v]);
+        let edge = squared_distance(pa, pb);
+        let flipped = squared_distance(pt, pf);
+        let delaunay = angle_share(pt, pa, pb) + angle_share(pf, pa, pb);
+        let contexts = [
+            (size * 16 + balance) * 3 + usize::from(self.touched[far].min(2)),
+            (size * 64 + pair(low, high)) * 4 + self.urgency(far),
+            (size * 64 + pair(vt, vf)) * 4 + self.urgency(far),
+            ((size * 4 + self.urgency(a)) * 4 + self.urgency(b)) * 20
+                + self.urgency(far) * 5
+                + (self.undecided[far] as usize).min(5)
+                - 1,
+            size * 64 + delaunay * 8 + share(edge, flipped, 8),
+            (size * 16 + around) * 8 + bucket(va + vb, 8),
+        ];
+        (contexts, size * 2 + usize::from(self.urgency(far) > 0))
+    }
+}
+
+/// `value − first` clamped to 0..8 (0..16 where the caller has more room).
+fn bucket(value: i32, first: i32) -> usize {
+    let top = if first < 0 { 15 } else { 7 };
+    (value - first).clamp(0, top) as usize
+}
+
+fn difference(p: [i32; 3], q: [i32; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| f64::from(p[i]) - f64::from(q[i]))
+}
+
+fn dot(p: [f64; 3], q: [f64; 3]) -> f64 {
+    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+}
+
+fn squared_distance(p: [i32; 3], q: [i32; 3]) -> f64 {
+    let d = difference(p, q);
+    dot(d, d)
+}
+
+/// x / (x + y) in `levels` equal steps; the middle if both vanish.
+fn share(x: f64, y: f64, levels: usize) -> usize {
+    let sum = x + y;
+    if sum > 0.0 { ((x / sum * levels as f64) as usize).min(levels - 1) } else { levels / 2 }
+}
+
+/// The angle at `tip` over the edge a–b in four steps, by its cosine.
+fn angle_share(tip: [i32; 3], a: [i32; 3], b: [i32; 3]) -> usize {
+    let (u, v) = (difference(a, tip), difference(b, tip));
+    let length = (dot(u, u) * dot(v, v)).sqrt();
+    let cosine = if length > 0.0 { dot(u, v) / length } else { 0.0 };
+    ((1.0 - cosine) * 2.0).clamp(0.0, 3.0) as usize
+}

@@ -1,0 +1,40 @@
+//! The passes of a stream, written once for encoder and decoder over [`BitCoder`]: what is coded,
+//! in which order, under which contexts (`format/SPEC.md`, section 7).
+//!
+//! The encoder hands the truth in as a `target`; the decoder has none and gets it back.
+//!
+//! [`BitCoder`]: crate::bitstream::range_coder::BitCoder
+
+pub(crate) mod base;
+pub(crate) mod connectivity;
+pub(crate) mod coordinates;
+pub(crate) mod patch;
+pub(crate) mod refine;
+
+use crate::mesh::Surface;
+
+/// The mesh that passes refine.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct GridMesh {
+    pub(crate) surface: Surface,
+    /// Grid cell of each vertex at the present precision.
+    pub(crate) positions: Vec<[i32; 3]>,
+    /// Per vertex, along and across the surface: log2 of (residual / edge length), in eighths.
+    pub(crate) roughness: Vec<[i8; 2]>,
+}
+
+impl GridMesh {
+    /// Makes room for exactly this much more.
+    pub(crate) fn reserve(&mut self, vertices: usize, faces: usize) {
+        self.positions.reserve_exact(vertices);
+        self.roughness.reserve_exact(vertices);
+        self.surface.corner_of.reserve_exact(vertices);
+        self.surface.valence.reserve_exact(vertices);
+        self.surface.triangles.reserve_exact(faces);
+        self.surface.opposite.reserve_exact(3 * faces);
+    }
+}
+
+/// A payload names something that no encoder writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Malformed(pub(crate) &'static str);

@@ -1,0 +1,10 @@
+//! Removal of odd vertices from a surface, and the record from which an encoder brings them back.
+
+pub(crate) mod collapse;
+pub(crate) mod geometry;
+pub(crate) mod record;
+pub(crate) mod shrinking;
+pub(crate) mod triangulate;
+
+pub(crate) use record::LevelRecord;
+pub(crate) use shrinking::{ShrinkingSurface, Star};

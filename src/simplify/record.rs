@@ -1,0 +1,69 @@
+//! What one level removed.
+
+/// Stars of the odd vertices of one level, in order of removal.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LevelRecord {
+    vertices: Vec<u32>,
+    ring_ends: Vec<u32>,
+    /// Neighbours, counter-clockwise; an open ring goes from boundary to boundary.
+    rings: Vec<u32>,
+    face_ends: Vec<u32>,
+    /// Slots of the star's faces, face i at ring edge i. The first `ring − 2` slots hold the patch
+    /// afterwards, the others are free.
+    faces: Vec<u32>,
+}
+
+/// One removed vertex with what stood around it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Removed<'a> {
+    pub(crate) vertex: u32,
+    pub(crate) ring: &'a [u32],
+    pub(crate) faces: &'a [u32],
+}
+
+impl Removed<'_> {
+    pub(crate) fn is_closed(&self) -> bool {
+        self.ring.len() == self.faces.len()
+    }
+
+    /// Slots in which the patch stands after removal.
+    pub(crate) fn patch(&self) -> &[u32] {
+        &self.faces[..self.ring.len() - 2]
+    }
+}
+
+impl LevelRecord {
+    pub(crate) fn push(&mut self, vertex: u32, ring: &[u32], faces: &[u32]) {
+        self.vertices.push(vertex);
+        self.rings.extend_from_slice(ring);
+        self.ring_ends.push(self.rings.len() as u32);
+        self.faces.extend_from_slice(faces);
+        self.face_ends.push(self.faces.len() as u32);
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.vertices.len()
+    }
+
+    pub(crate) fn get(&self, index: usize) -> Removed<'_> {
+        let start = |ends: &[u32]| if index == 0 { 0 } else { ends[index - 1] as usize };
+        Removed {
+            vertex: self.vertices[index],
+            ring: &self.rings[start(&self.ring_ends)..self.ring_ends[index] as usize],
+            faces: &self.faces[start(&self.face_ends)..self.face_ends[index] as usize],
+        }
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Removed<'_>> {
+        (0..self.len()).map(|i| self.get(i))
+    }
+
+    /// Gives back what `Vec` growth left over.
+    pub(crate) fn shrink_to_fit(&mut self) {
+        for v in
+            [&mut self.vertices, &mut self.ring_ends, &mut self.rings, &mut self.face_ends, &mut self.faces]
+        {
+            v.shrink_to_fit();
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! A surface from which vertices are taken, one star at a time.
+
+use crate::mesh::Surface;
+use crate::mesh::surface::{NO_CORNER, next, prev};
+
+/// Mark of a triangle slot that holds nothing.
+pub(crate) const FREE: [u32; 3] = [u32::MAX; 3];
+
+/// The faces around one vertex.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Star {
+    pub(crate) vertex: u32,
+    /// Corners at the vertex, counter-clockwise.
+    pub(crate) corners: Vec<u32>,
+    /// Neighbours; as many as corners if closed, else one more.
+    pub(crate) ring: Vec<u32>,
+}
+
+impl Star {
+    pub(crate) fn is_closed(&self) -> bool {
+        self.ring.len() == self.corners.len()
+    }
+
+    pub(crate) fn degree(&self) -> usize {
+        self.ring.len()
+    }
+}
+
+/// Surface with slots that become free.
+pub(crate) struct ShrinkingSurface {
+    pub(crate) surface: Surface,
+    num_vertices: usize,
+    num_faces: usize,
+    /// Scratch: neighbours of the polygon corners and the corner across each polygon edge.
+    after: Vec<usize>,
+    before: Vec<usize>,
+    outer: Vec<u32>,
+    slots: Vec<u32>,
+}
+
+impl ShrinkingSurface {
+    pub(crate) fn new(surface: Surface) -> Self {
+        Self {
+            num_vertices: surface.corner_of.len(),
+            num_faces: surface.triangles.len(),
+            surface,
+            after: Vec::new(),
+            before: Vec::new(),
+            outer: Vec::new(),
+            slots: Vec::new(),
+        }
+    }
+
+    /// Vertices still there.
+    pub(crate) fn num_vertices(&self) -> usize {
+        self.num_vertices
+    }
+
+    /// Triangles still there.
+    pub(crate) fn num_faces(&self) -> usize {
+        self.num_faces
+    }
+
+    pub(crate) fn contains(&self, vertex: u32) -> bool {
+        self.surface.corner_of[vertex as usize] != NO_CORNER
+    }
+
+    pub(crate) fn read_star(&self, vertex: u32, star: &mut Star) {
+        star.vertex = vertex;
+        let corner = self.surface.corner_of[vertex as usize];
+        self.surface.ring(corner, &mut star.corners, &mut star.ring);
+    }
+
+    /// True if an edge joins the two vertices.
+    pub(crate) fn has_edge(&self, a: u32, b: u32) -> bool {
+        let s = &self.surface;
+        let (from, to) = if s.valence[a as usize] <= s.valence[b as usize] { (a, b) } else { (b, a) };
+        let start = s.corner_of[from as usize];
+        let mut corner = start;
+        loop {
+            if s.vertex(next(corner)) == to || s.vertex(prev(corner)) == to {
+                return true;
+            }
+            corner = s.swing_left(corner);
+            if corner == start {
+                return false;
+            }
+            if corner == NO_CORNER {
+                break;
+            }
+        }
+        let mut corner = s.swing_right(start);
+        while corner != NO_CORNER {
+            if s.vertex(next(corner)) == to || s.vertex(prev(corner)) == to {
+                return true;
+            }
+            corner = s.swing_right(corner);
+        }
+        false
+    }
+
+    /// Takes the vertex of `star` out and closes the hole by cutting ears: `ears[k]` is the ring
+    /// index whose corner the k-th triangle cuts off; `degree − 2` of them. Returns the slots of the
+    /// star's faces: the new triangles stand in the first ones, in order.
+    pub(crate) fn remove(&mut self, star: &Star, ears: &[usize]) -> &[u32] {
+        let degree = star.degree();
+        debug_assert_eq!(ears.len(), degree - 2);
+        let surface = &mut self.surface;
+        self.slots.clear();
+        self.slots.extend(star.corners.iter().map(|&c| c / 3));
+        self.outer.clear();
+        self.outer.extend(star.corners.iter().map(|&c| surface.across(c)));
+        if !star.is_closed() {
+            self.outer.push(NO_CORNER);
+        }
+        for &slot in &self.slots {
+            surface.triangles[slot as usize] = FREE;
+            surface.opposite[3 * slot as usize..3 * slot as usize + 3].fill(NO_CORNER);
+        }
+        let closes_new_edge = !star.is_closed() && degree > 2;
+        for (i, &v) in star.ring.iter().enumerate() {
+            let is_end = i == 0 || i == degree - 1;
+            surface.valence[v as usize] -= u32::from(!(closes_new_edge && is_end));
+        }
+
+        self.after.clear();
+        self.after.extend((0..degree).map(|i| if i + 1 == degree { 0 } else { i + 1 }));
+        self.before.clear();
+        self.before.extend((0..degree).map(|i| if i == 0 { degree - 1 } else { i - 1 }));
+        for (k, &ear) in ears.iter().enumerate() {
+            let (p, n) = (self.before[ear], self.after[ear]);
+            let base = 3 * self.slots[k];
+            surface.triangles[self.slots[k] as usize] = [star.ring[p], star.ring[ear], star.ring[n]];
+            for (j, &i) in [p, ear, n].iter().enumerate() {
+                surface.corner_of[star.ring[i] as usize] = base + j as u32;
+            }
+            // Corner 2 (at n) faces the edge p → ear, corner 0 (at p) faces ear → n.
+            surface.link(base + 2, self.outer[p]);
+            surface.link(base, self.outer[ear]);
+            if k + 1 == ears.len() {
+                surface.link(base + 1, self.outer[n]);
+            } else {
+                for i in [p, n] {
+                    surface.valence[star.ring[i] as usize] += 1;
+                }
+                self.outer[p] = base + 1;
+                self.after[p] = n;
+                self.before[n] = p;
+            }
+        }
+        if ears.is_empty() {
+            // An ear of the boundary: its edge is the boundary now.
+            let o = self.outer[0];
+            surface.opposite[o as usize] = NO_CORNER;
+            for c in [next(o), prev(o)] {
+                let v = surface.vertex(c) as usize;
+                surface.corner_of[v] = c;
+            }
+        }
+        surface.corner_of[star.vertex as usize] = NO_CORNER;
+        self.num_vertices -= 1;
+        self.num_faces -= star.corners.len() - ears.len();
+        &self.slots
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rebuilds adjacency from the triangles that are left and compares.
+    fn check(shrinking: &ShrinkingSurface) {
+        let mut name = vec![u32::MAX; shrinking.surface.corner_of.len()];
+        let mut count = 0;
+        for (v, n) in name.iter_mut().enumerate() {
+            if shrinking.contains(v as u32) {
+                *n = count;
+                count += 1;
+            }
+        }
+        let left: Vec<[u32; 3]> = shrinking
+            .surface
+            .triangles
+            .iter()
+            .filter(|&&t| t != FREE)
+            .map(|t| t.map(|v| name[v as usize]))
+            .collect();
+        assert_eq!((left.len(), count as usize), (shrinking.num_faces(), shrinking.num_vertices()));
+        let rebuilt = Surface::from_triangles(left, count as usize).unwrap();
+        for (v, &n) in name.iter().enumerate() {
+            if n != u32::MAX {
+                assert_eq!(shrinking.surface.valence[v], rebuilt.valence[n as usize], "valence of {v}");
+                let (mut a, mut b) = (Star::default(), Star::default());
+                shrinking.read_star(v as u32, &mut a);
+                ShrinkingSurface::new(rebuilt.clone()).read_star(n, &mut b);
+                assert_eq!((a.is_closed(), a.degree()), (b.is_closed(), b.degree()));
+            }
+        }
+    }
+
+    #[test]
+    fn removal_leaves_a_surface() {
+        let n = 6;
+        let at = |i: u32, j: u32| i * n + j;
+        let triangles: Vec<[u32; 3]> = (0..n - 1)
+            .flat_map(|i| (0..n - 1).map(move |j| (i, j)))
+            .flat_map(|(i, j)| {
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect();
+        let surface = Surface::from_triangles(triangles, (n * n) as usize).unwrap();
+        let mut shrinking = ShrinkingSurface::new(surface);
+        let mut star = Star::default();
+        // Inside, on an edge, and at a corner of valence two.
+        for (vertex, ears) in [(at(2, 2), vec![1, 2, 3, 4]), (at(0, 3), vec![1, 2]), (at(0, 5), vec![])] {
+            shrinking.read_star(vertex, &mut star);
+            let ears: Vec<usize> = ears.into_iter().take(star.degree() - 2).collect();
+            shrinking.remove(&star, &ears);
+            check(&shrinking);
+            assert!(!shrinking.contains(vertex));
+        }
+    }
+}
