@@ -20,6 +20,7 @@ use crate::mesh::TriMesh;
 mod adjacency;
 mod casorati;
 mod harris3d;
+mod locality;
 mod nfv;
 mod paraboloid;
 mod pca;
@@ -142,7 +143,7 @@ pub fn evaluate_with_progress(
         progress(mesh.num_vertices());
         return vec![0.0; mesh.num_vertices()];
     };
-    let mut values = match descriptor {
+    let values = match descriptor {
         Descriptor::Pca => pca::evaluate(&surface, window, progress),
         Descriptor::Nfv => nfv::evaluate(&surface, window, progress),
         Descriptor::Casorati => casorati::evaluate(&surface, window, progress),
@@ -151,6 +152,7 @@ pub fn evaluate_with_progress(
         Descriptor::Sqem => sqem::evaluate(&surface, window, progress),
         Descriptor::PcaQem => pca_qem::evaluate(&surface, window, progress),
     };
+    let mut values = surface.in_mesh_order(&values);
     for value in &mut values {
         // Also turns −0 and NaN into +0: only windows far beyond any sensible radius could make a NaN.
         *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::adjacency::{Adjacency, is_proper};
+use super::adjacency::Adjacency;
+use super::locality::morton_order;
 use super::scale::{exponent, times_power_of_two};
 use crate::mesh::TriMesh;
 
@@ -18,31 +19,50 @@ pub(super) struct Vertex {
     pub(super) normal: DVec3,
 }
 
-/// The input of every descriptor.
-pub(super) struct Surface<'a> {
-    triangles: &'a [[u32; 3]],
+/// The input of every descriptor. Vertices are renumbered so that neighbours are near in memory.
+pub(super) struct Surface {
+    /// The proper faces.
+    triangles: Vec<[u32; 3]>,
     pub(super) adjacency: Adjacency,
     pub(super) vertices: Vec<Vertex>,
+    /// Vertices of the mesh, in the order of `vertices`.
+    mesh_vertices: Vec<u32>,
     /// 1 / l̄ in the units of the scaled positions.
     pub(super) unit: f64,
 }
 
-impl<'a> Surface<'a> {
+impl Surface {
     /// `None` if l̄ vanishes beside the coordinates, or there are no edges.
-    pub(super) fn new(mesh: &'a TriMesh, mean_edge: f64) -> Option<Self> {
-        let adjacency = Adjacency::new(mesh);
-        let largest = largest_exponent(mesh, &adjacency)?;
+    pub(super) fn new(mesh: &TriMesh, mean_edge: f64) -> Option<Self> {
+        let mut triangles = proper_triangles(mesh);
+        let (low, high) = bounding_box(mesh, &triangles)?;
         // l̄ goes to [1, 2), less if coordinates would overflow. Differences may still become infinite
         // when they are divided by l̄; the test of the radius discards those.
+        let largest = exponent(low.abs().max(high.abs()).max_element());
         let shift = (-exponent(mean_edge)).min(1000 - largest);
         let unit = times_power_of_two(mean_edge, shift).recip();
         if !unit.is_finite() {
             return None;
         }
-        let mut surface = Self { triangles: mesh.triangles(), adjacency, vertices: Vec::new(), unit };
-        surface.vertices = (mesh.positions().iter())
-            .map(|p| Vertex { position: scaled(p, shift), normal: DVec3::ZERO })
-            .collect();
+
+        let positions = scaled_positions(mesh, shift);
+        let mesh_vertices = morton_order(&positions, scaled(low, shift), scaled(high, shift));
+        let mut surface_vertices = vec![0; mesh_vertices.len()];
+        for (i, &v) in mesh_vertices.iter().enumerate() {
+            surface_vertices[v as usize] = i as u32;
+        }
+        for t in &mut triangles {
+            *t = t.map(|v| surface_vertices[v as usize]);
+        }
+        let mut surface = Self {
+            adjacency: Adjacency::new(positions.len(), &triangles),
+            vertices: (mesh_vertices.iter())
+                .map(|&v| Vertex { position: positions[v as usize], normal: DVec3::ZERO })
+                .collect(),
+            triangles,
+            mesh_vertices,
+            unit,
+        };
         surface.set_normals();
         Some(surface)
     }
@@ -51,9 +71,18 @@ impl<'a> Surface<'a> {
         self.vertices.len()
     }
 
-    /// Proper faces with the cross product of their edges, which is zero for a zero area.
-    pub(super) fn faces(&self) -> impl Iterator<Item = (&'a [u32; 3], DVec3)> {
-        self.triangles.iter().filter(|t| is_proper(t)).map(|t| {
+    /// Puts one value per vertex back into the order of the mesh.
+    pub(super) fn in_mesh_order(&self, values: &[f64]) -> Vec<f64> {
+        let mut ordered = vec![0.0; values.len()];
+        for (&v, &value) in self.mesh_vertices.iter().zip(values) {
+            ordered[v as usize] = value;
+        }
+        ordered
+    }
+
+    /// Faces with the cross product of their edges, which is zero for a zero area.
+    pub(super) fn faces(&self) -> impl Iterator<Item = (&[u32; 3], DVec3)> {
+        self.triangles.iter().map(|t| {
             let [a, b, c] = t.map(|v| self.vertices[v as usize].position);
             (t, (b - a).cross(c - a))
         })
@@ -100,32 +129,40 @@ impl VectorSum {
 
 /// See [`super::mean_edge_length`].
 pub(super) fn mean_edge_length(mesh: &TriMesh) -> f64 {
-    let adjacency = Adjacency::new(mesh);
-    let Some(largest) = largest_exponent(mesh, &adjacency) else {
+    let triangles = proper_triangles(mesh);
+    let Some((low, high)) = bounding_box(mesh, &triangles) else {
         return 0.0;
     };
     // Squares then overflow nowhere, and vanish only beside coordinates 2^1000 times larger.
-    let shift = 500 - largest;
-    let positions: Vec<DVec3> = mesh.positions().iter().map(|p| scaled(p, shift)).collect();
+    let shift = 500 - exponent(low.abs().max(high.abs()).max_element());
+    let positions = scaled_positions(mesh, shift);
+    let adjacency = Adjacency::new(positions.len(), &triangles);
     let (mut sum, mut count) = (0.0, 0u64);
-    for v in 0..adjacency.num_vertices() {
-        for &u in adjacency.of(v).iter().filter(|&&u| u as usize > v) {
-            sum += positions[v].distance(positions[u as usize]);
+    for (v, &position) in positions.iter().enumerate() {
+        for &u in adjacency.of(v).iter().flatten().filter(|&&u| u as usize > v) {
+            sum += position.distance(positions[u as usize]);
             count += 1;
         }
     }
     times_power_of_two(sum / count as f64, -shift).min(f64::MAX)
 }
 
-/// Exponent of the largest coordinate among the vertices with an edge, `None` without edges.
-fn largest_exponent(mesh: &TriMesh, adjacency: &Adjacency) -> Option<i32> {
-    (mesh.positions().iter().enumerate())
-        .filter(|&(v, _)| !adjacency.of(v).is_empty())
-        .map(|(_, p)| p.iter().fold(0.0, |largest: f64, c| largest.max(c.abs())))
-        .reduce(f64::max)
-        .map(exponent)
+/// The faces that name three different vertices.
+fn proper_triangles(mesh: &TriMesh) -> Vec<[u32; 3]> {
+    mesh.triangles().iter().copied().filter(|[a, b, c]| a != b && b != c && c != a).collect()
 }
 
-fn scaled(position: &[f64; 3], shift: i32) -> DVec3 {
-    DVec3::from_array(position.map(|c| times_power_of_two(c, shift)))
+/// Box around the corners of `triangles`, model units; `None` without triangles.
+fn bounding_box(mesh: &TriMesh, triangles: &[[u32; 3]]) -> Option<(DVec3, DVec3)> {
+    let mut corners = triangles.iter().flatten().map(|&v| DVec3::from_array(mesh.positions()[v as usize]));
+    let first = corners.next()?;
+    Some(corners.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
+}
+
+fn scaled_positions(mesh: &TriMesh, shift: i32) -> Vec<DVec3> {
+    mesh.positions().iter().map(|&p| scaled(DVec3::from_array(p), shift)).collect()
+}
+
+fn scaled(p: DVec3, shift: i32) -> DVec3 {
+    DVec3::from_array(p.to_array().map(|c| times_power_of_two(c, shift)))
 }

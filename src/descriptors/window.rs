@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::adjacency::GROUP;
 use super::surface::Surface;
 use super::symmetric::Sym3;
 
@@ -43,7 +44,7 @@ const BLOCK: usize = 512;
 
 /// One window at a time, and the scratch to gather it. The centre comes first.
 pub(super) struct LocalWindow<'a> {
-    pub(super) surface: &'a Surface<'a>,
+    pub(super) surface: &'a Surface,
     rings: u32,
     largest_square: f64,
     minus_inverse_width: f64,
@@ -85,7 +86,7 @@ pub(super) fn map_windows<T: Clone + Default + Send>(
 }
 
 impl<'a> LocalWindow<'a> {
-    fn new(surface: &'a Surface<'a>, window: &Window) -> Self {
+    fn new(surface: &'a Surface, window: &Window) -> Self {
         let square = window.r() * window.r();
         Self {
             surface,
@@ -122,14 +123,19 @@ impl<'a> LocalWindow<'a> {
             let mut len = end;
             for i in begin..end {
                 let row = self.surface.adjacency.of(self.queue[i] as usize);
-                if self.queue.len() < len + row.len() {
-                    self.queue.resize(2 * (len + row.len()), 0);
-                }
-                // Written first and kept if new: whether it is new is a coin toss to branch prediction.
-                for &u in row {
-                    self.queue[len] = u;
-                    len += usize::from(self.stamps[u as usize] != stamp);
-                    self.stamps[u as usize] = stamp;
+                for group in row {
+                    if self.queue.len() < len + GROUP {
+                        self.queue.resize(2 * (len + GROUP), 0);
+                    }
+                    // Written first and kept if new: whether it is new is a coin toss to branch prediction.
+                    let room = &mut self.queue[len..len + GROUP];
+                    let mut added = 0;
+                    for &u in group {
+                        room[added % GROUP] = u;
+                        added += usize::from(self.stamps[u as usize] != stamp);
+                        self.stamps[u as usize] = stamp;
+                    }
+                    len += added;
                 }
             }
             if len == end {
