@@ -185,8 +185,8 @@ impl Moments {
                 l[i][j] = (gram[i][j] * scale[i] * scale[j] - dot) * pivot[j];
             }
             let left: f64 = 1.0 - (0..i).map(|k| l[i][k] * l[i][k]).sum::<f64>();
-            // A pivot is at least the smallest eigenvalue; this also stops at NaN.
-            if !(left * NORMAL_EQUATIONS_LIMIT >= 1.0) {
+            // A pivot is at least the smallest eigenvalue.
+            if left.is_nan() || left * NORMAL_EQUATIONS_LIMIT < 1.0 {
                 return None;
             }
             pivot[i] = left.sqrt().recip();
@@ -196,12 +196,14 @@ impl Moments {
         let mut inverse = [[0.0; UNKNOWNS]; UNKNOWNS];
         let mut trace_of_inverse = 0.0;
         for i in 0..UNKNOWNS {
-            inverse[i][i] = pivot[i];
-            for j in 0..i {
+            let mut row = [0.0; UNKNOWNS];
+            row[i] = pivot[i];
+            for (j, entry) in row[..i].iter_mut().enumerate() {
                 let dot: f64 = (j..i).map(|k| l[i][k] * inverse[k][j]).sum();
-                inverse[i][j] = -dot * pivot[i];
+                *entry = -dot * pivot[i];
             }
-            trace_of_inverse += (0..=i).map(|j| inverse[i][j] * inverse[i][j]).sum::<f64>();
+            trace_of_inverse += row.iter().map(|entry| entry * entry).sum::<f64>();
+            inverse[i] = row;
         }
         if trace_of_inverse * UNKNOWNS as f64 > NORMAL_EQUATIONS_LIMIT {
             return None;
@@ -233,9 +235,6 @@ fn solve_by_qr(local: &LocalWindow, frame: &Frame, lengths: &[f64; UNKNOWNS]) ->
     let triangle: Matrix5<f64> = r.fixed_view::<UNKNOWNS, UNKNOWNS>(0, 0).into_owned();
     let right: Vector5<f64> = r.fixed_view::<UNKNOWNS, 1>(0, UNKNOWNS).into_owned();
     let svd = triangle.try_svd(true, true, f64::EPSILON, 1000)?;
-    let largest = svd.singular_values.max();
-    if !(svd.singular_values.min() > SINGULAR * largest) {
-        return None;
-    }
-    svd.solve(&right, 0.0).ok().map(Into::into)
+    let singular = svd.singular_values.min() <= SINGULAR * svd.singular_values.max();
+    if singular { None } else { svd.solve(&right, 0.0).ok().map(Into::into) }
 }

@@ -54,17 +54,14 @@ impl Surface {
         for t in &mut triangles {
             *t = t.map(|v| surface_vertices[v as usize]);
         }
-        let mut surface = Self {
-            adjacency: Adjacency::new(positions.len(), &triangles),
-            vertices: (mesh_vertices.iter())
-                .map(|&v| Vertex { position: positions[v as usize], normal: DVec3::ZERO })
-                .collect(),
-            triangles,
-            mesh_vertices,
-            unit,
-        };
-        surface.set_normals();
-        Some(surface)
+        let mut vertices: Vec<Vertex> = (mesh_vertices.iter())
+            .map(|&v| Vertex { position: positions[v as usize], normal: DVec3::ZERO })
+            .collect();
+        let (adjacency, ()) = rayon::join(
+            || Adjacency::new(positions.len(), &triangles),
+            || set_normals(&mut vertices, &triangles),
+        );
+        Some(Self { triangles, adjacency, vertices, mesh_vertices, unit })
     }
 
     pub(super) fn num_vertices(&self) -> usize {
@@ -82,23 +79,26 @@ impl Surface {
 
     /// Faces with the cross product of their edges, which is zero for a zero area.
     pub(super) fn faces(&self) -> impl Iterator<Item = (&[u32; 3], DVec3)> {
-        self.triangles.iter().map(|t| {
-            let [a, b, c] = t.map(|v| self.vertices[v as usize].position);
-            (t, (b - a).cross(c - a))
-        })
+        self.triangles.iter().map(|t| (t, cross_product(&self.vertices, t)))
     }
+}
 
-    /// n̂: normalised sum of the cross products of the faces at a vertex (ours: area weighting).
-    fn set_normals(&mut self) {
-        let mut sums = vec![VectorSum::default(); self.num_vertices()];
-        for (t, cross) in self.faces() {
-            for &v in t {
-                sums[v as usize].add(cross);
-            }
+fn cross_product(vertices: &[Vertex], triangle: &[u32; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(|v| vertices[v as usize].position);
+    (b - a).cross(c - a)
+}
+
+/// n̂: normalised sum of the cross products of the faces at a vertex (ours: area weighting).
+fn set_normals(vertices: &mut [Vertex], triangles: &[[u32; 3]]) {
+    let mut sums = vec![VectorSum::default(); vertices.len()];
+    for t in triangles {
+        let cross = cross_product(vertices, t);
+        for &v in t {
+            sums[v as usize].add(cross);
         }
-        for (vertex, sum) in self.vertices.iter_mut().zip(&sums) {
-            vertex.normal = sum.direction();
-        }
+    }
+    for (vertex, sum) in vertices.iter_mut().zip(&sums) {
+        vertex.normal = sum.direction();
     }
 }
 
