@@ -1,1 +1,161 @@
-//! To come.
+//! Seven scalar descriptors of geometric variability, one value per vertex (sections 3 to 5 of the paper).
+//!
+//! Each value is ≥ 0 and larger where the surface is more salient within a [`Window`]. Section and equation
+//! numbers refer to *Lazy Wavelet Simplification using Scale-dependent Dense Geometric Variability
+//! Descriptors*; the places marked *ours* are choices the paper leaves open.
+//!
+//! - **Units (ours).** Everything is evaluated in coordinates divided by l̄, the mean edge length of the
+//!   *finest* mesh, so no value depends on the units of the model. If l̄ is 0 every value is 0.
+//! - **Topology.** Faces with a repeated index are dropped. Two vertices are neighbours when a remaining face
+//!   holds both, whatever the manifoldness. Vertices without neighbours have the value 0.
+//! - **Determinism.** The same input gives the same bits, whatever the number of threads.
+
+use std::fmt;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use crate::mesh::TriMesh;
+
+mod adjacency;
+mod casorati;
+mod harris3d;
+mod locality;
+mod nfv;
+mod paraboloid;
+mod pca;
+mod pca_qem;
+mod quadric;
+mod scale;
+mod shape_index;
+mod sqem;
+mod surface;
+mod symmetric;
+mod window;
+
+pub use window::Window;
+
+use surface::Surface;
+
+/// Which measure of variability to evaluate.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Descriptor {
+    /// Surface variation λ0 / (λ0 + λ1 + λ2) of the window's covariance (eq. 3–4).
+    Pca,
+    /// Variation of the voted normal field (eq. 7–9).
+    Nfv,
+    /// Casorati curvature of a fitted paraboloid (eq. 10–11).
+    Casorati,
+    /// Shape index of a fitted paraboloid (eq. 12).
+    ShapeIndex,
+    /// Harris response of a fitted paraboloid (eq. 17–21).
+    #[default]
+    Harris3d,
+    /// Quadric error smoothed over the window (eq. 22–26).
+    Sqem,
+    /// Quadric error built from principal components (eq. 27–33).
+    PcaQem,
+}
+
+/// The name is none of [`Descriptor::ALL`].
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("unknown descriptor `{name}`; known are pca, nfv, casorati, shape-index, harris3d, sqem, pca-qem")]
+pub struct UnknownDescriptor {
+    /// What was asked for.
+    pub name: String,
+}
+
+impl Descriptor {
+    /// All seven, in the order of the paper.
+    pub const ALL: [Descriptor; 7] = [
+        Descriptor::Pca,
+        Descriptor::Nfv,
+        Descriptor::Casorati,
+        Descriptor::ShapeIndex,
+        Descriptor::Harris3d,
+        Descriptor::Sqem,
+        Descriptor::PcaQem,
+    ];
+
+    /// The lower-case name used on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Descriptor::Pca => "pca",
+            Descriptor::Nfv => "nfv",
+            Descriptor::Casorati => "casorati",
+            Descriptor::ShapeIndex => "shape-index",
+            Descriptor::Harris3d => "harris3d",
+            Descriptor::Sqem => "sqem",
+            Descriptor::PcaQem => "pca-qem",
+        }
+    }
+}
+
+impl fmt::Display for Descriptor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Descriptor {
+    type Err = UnknownDescriptor;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        Self::ALL
+            .into_iter()
+            .find(|descriptor| descriptor.name() == name)
+            .ok_or_else(|| UnknownDescriptor { name: name.to_owned() })
+    }
+}
+
+/// Mean length of the undirected edges of `mesh`, each counted once, in model units.
+///
+/// Faces with a repeated index are dropped first. 0 without edges. Coordinates of any finite size are
+/// fine; a mean beyond `f64::MAX` is returned as `f64::MAX`.
+pub fn mean_edge_length(mesh: &TriMesh) -> f64 {
+    surface::mean_edge_length(mesh)
+}
+
+/// Evaluates `descriptor` at every vertex of `mesh`, in the order of the vertices.
+///
+/// - `window`: rings and radius, the radius in units of `mean_edge`.
+/// - `mean_edge`: [`mean_edge_length`] of the **finest** mesh, model units, also when `mesh` is a coarser
+///   level of it. Unless it is positive and finite, all values are 0.
+///
+/// All values are finite and ≥ 0. Runs on the current rayon pool.
+pub fn evaluate(descriptor: Descriptor, mesh: &TriMesh, window: &Window, mean_edge: f64) -> Vec<f64> {
+    evaluate_with_progress(descriptor, mesh, window, mean_edge, &|_| ())
+}
+
+/// As [`evaluate`], telling `progress` after each block of vertices how many more are done.
+///
+/// The reported numbers add up to the number of vertices. Several threads may call at once.
+pub fn evaluate_with_progress(
+    descriptor: Descriptor,
+    mesh: &TriMesh,
+    window: &Window,
+    mean_edge: f64,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Vec<f64> {
+    let usable = window.radius > 0.0 && mean_edge > 0.0 && mean_edge.is_finite();
+    let Some(surface) = usable.then(|| Surface::new(mesh, mean_edge)).flatten() else {
+        progress(mesh.num_vertices());
+        return vec![0.0; mesh.num_vertices()];
+    };
+    let values = match descriptor {
+        Descriptor::Pca => pca::evaluate(&surface, window, progress),
+        Descriptor::Nfv => nfv::evaluate(&surface, window, progress),
+        Descriptor::Casorati => casorati::evaluate(&surface, window, progress),
+        Descriptor::ShapeIndex => shape_index::evaluate(&surface, window, progress),
+        Descriptor::Harris3d => harris3d::evaluate(&surface, window, progress),
+        Descriptor::Sqem => sqem::evaluate(&surface, window, progress),
+        Descriptor::PcaQem => pca_qem::evaluate(&surface, window, progress),
+    };
+    let mut values = surface.in_mesh_order(&values);
+    for value in &mut values {
+        // Also turns −0 and NaN into +0: only windows far beyond any sensible radius could make a NaN.
+        *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };
+    }
+    values
+}
