@@ -18,7 +18,7 @@ use std::{
     io::{self, BufRead, Read, Write},
 };
 
-/// What no known statement is ignored, but must look like a word: no longer than this, and printable.
+/// The longest word that is passed over as a statement we do not know; anything else is damage.
 const MAX_KEYWORD_BYTES: usize = 32;
 
 /// Reads an OBJ file. Points, lines, curves, normals, texture coordinates, groups and materials are ignored.
