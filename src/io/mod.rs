@@ -1,1 +1,187 @@
-//! To come.
+//! Mesh files: OBJ, PLY and STL, each also compressed with zstd (`.zst`).
+//!
+//! The file formats stay at the edge of the crate: a file becomes a [`TriMesh`] and a [`ReadReport`], a
+//! [`TriMesh`] becomes a file, and nothing else knows that files exist.
+//!
+//! Input is not trusted. No input makes a reader panic, and counts declared in a file never decide how much
+//! is allocated: memory grows as the data that fills it is found, to a small multiple of the file's size.
+//!
+//! ```no_run
+//! let file = lwc::io::read("horse.ply.zst")?;
+//! println!("{} vertices, {:?}", file.mesh.num_vertices(), file.report);
+//! lwc::io::write("horse.obj", &file.mesh)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod atomic;
+mod builder;
+mod error;
+mod obj;
+mod ply;
+mod stl;
+mod text;
+
+pub use atomic::write_atomic;
+pub use error::{Place, ReadError, WriteError};
+
+use crate::mesh::TriMesh;
+use std::{
+    fs::File,
+    io::{self, Read, Write},
+    path::Path,
+};
+
+/// The largest file that is read, in bytes after decompression: 16 GiB.
+///
+/// It is there for the `.zst` file of a few bytes that would unpack to fill the machine. A mesh of a hundred
+/// million vertices is smaller in every format but the wordiest OBJ.
+pub const MAX_FILE_BYTES: u64 = 16 << 30;
+
+/// A mesh file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Format {
+    /// Wavefront OBJ: text, coordinates as decimal numbers.
+    Obj,
+    /// Stanford PLY: text or binary, float32 or float64.
+    Ply,
+    /// STL: triangles without shared vertices, float32.
+    Stl,
+}
+
+impl Format {
+    /// The format that the ending of `path` names, in any case; a further `.zst` is looked past.
+    /// `None` if the ending is none of ours.
+    pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
+        format_and_compression(path.as_ref()).map(|(format, _)| format)
+    }
+
+    /// The usual ending of such a file, without the dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Stl => "stl",
+        }
+    }
+}
+
+/// Splits `model.ply.zst` into (PLY, compressed).
+fn format_and_compression(path: &Path) -> Option<(Format, bool)> {
+    let ending = |p: &Path| Some(p.extension()?.to_str()?.to_ascii_lowercase());
+    let last = ending(path)?;
+    let is_compressed = last == "zst";
+    let named = if is_compressed { ending(path.file_stem()?.as_ref())? } else { last };
+    let format = [Format::Obj, Format::Ply, Format::Stl].into_iter().find(|f| f.extension() == named)?;
+    Some((format, is_compressed))
+}
+
+/// What a file held: the mesh, and what was changed or left out on the way.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MeshFile {
+    /// Vertices in the order of the file, unused ones included; triangles in the order of the file.
+    pub mesh: TriMesh,
+    /// What the mesh does not show.
+    pub report: ReadReport,
+}
+
+/// What a reader changed or left out. Degenerate triangles (a repeated index) are *not* left out.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ReadReport {
+    /// Faces of four or more corners that were cut into the fan of their first corner.
+    pub polygons_triangulated: usize,
+    /// Faces of fewer than three corners, left out.
+    pub faces_skipped: usize,
+    /// STL only: corners that were joined with an earlier corner at exactly the same place.
+    pub corners_welded: usize,
+    /// Names of what was in the file and is not in the mesh, each once, in order of appearance:
+    /// OBJ statements (`vt`), PLY properties (`vertex.red`) and elements (`edge`).
+    pub ignored: Vec<String>,
+}
+
+/// Reads a mesh file; the ending of `path` says which format (see [`Format::from_path`]).
+///
+/// A well-formed file without vertices or faces is a mesh without vertices or faces, not an error.
+///
+/// # Errors
+/// If the file cannot be read, its ending is unknown, it is larger than [`MAX_FILE_BYTES`], or it is damaged.
+/// The error names the place in the file and the cause; the caller knows the file's name and puts it in front.
+pub fn read(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
+    let path = path.as_ref();
+    let (format, is_compressed) = format_and_compression(path).ok_or(ReadError::UnknownEnding)?;
+    let file = File::open(path)?;
+    let bytes = if is_compressed {
+        read_limited(zstd::Decoder::new(file)?, 0).map_err(|error| match error {
+            ReadError::Io(cause) => ReadError::Zstd(cause),
+            other => other,
+        })?
+    } else {
+        let size_hint = file.metadata()?.len();
+        read_limited(file, size_hint)?
+    };
+    read_bytes(&bytes, format)
+}
+
+/// Reads a mesh from the (uncompressed) bytes of a file.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
+    match format {
+        Format::Obj => obj::read(bytes),
+        Format::Ply => ply::read(bytes),
+        Format::Stl => stl::read(bytes),
+    }
+}
+
+fn read_limited(source: impl Read, size_hint: u64) -> Result<Vec<u8>, ReadError> {
+    let mut bytes = Vec::new();
+    if size_hint <= MAX_FILE_BYTES {
+        bytes.try_reserve_exact(size_hint as usize).map_err(io::Error::other)?;
+        source.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes)?;
+    }
+    if size_hint.max(bytes.len() as u64) > MAX_FILE_BYTES {
+        return Err(ReadError::TooLarge { message: format!("more than {MAX_FILE_BYTES} bytes") });
+    }
+    Ok(bytes)
+}
+
+/// Writes a mesh file; the ending of `path` says which format, a further `.zst` compresses it.
+///
+/// The file appears complete or not at all (see [`write_atomic`]).
+///
+/// # Errors
+/// If the file cannot be written, its ending is unknown, or the format cannot hold the mesh.
+pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
+    let path = path.as_ref();
+    let (format, is_compressed) = format_and_compression(path).ok_or(WriteError::UnknownEnding)?;
+    write_atomic(path, |out| {
+        if is_compressed {
+            let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
+            write_to(&mut compressor, mesh, format)?;
+            compressor.finish()?;
+            Ok(())
+        } else {
+            write_to(out, mesh, format)
+        }
+    })
+}
+
+/// Writes `mesh` in `format`, uncompressed. Writes are small: pass a buffered writer.
+///
+/// - OBJ: shortest decimal numbers that read back as the same float64.
+/// - PLY: binary little-endian; `float` if every coordinate is a float32, else `double`.
+/// - STL: binary; coordinates are rounded to float32 and vertices are no longer shared.
+///
+/// # Errors
+/// If `out` fails, or the format cannot hold the mesh.
+pub fn write_to(mut out: impl Write, mesh: &TriMesh, format: Format) -> Result<(), WriteError> {
+    match format {
+        Format::Obj => obj::write(&mut out, mesh)?,
+        Format::Ply => ply::write(&mut out, mesh)?,
+        Format::Stl => stl::write(&mut out, mesh)?,
+    }
+    Ok(())
+}

@@ -1,1 +1,247 @@
-//! To come.
+//! How far two surfaces are apart.
+//!
+//! [`compare`] measures from points of one surface to the nearest point of the other, in both directions.
+//! The root mean square is over the area, taken at evenly spread samples (`sample.rs`); the maximum is over
+//! the samples and the vertices (the one-sided Hausdorff distance, from below). The nearest point is exact:
+//! any point of any triangle, found with a tree of boxes (`nearest.rs`). The method is that of Cignoni,
+//! Rocchini and Scopigno, *Metro: measuring error on simplified surfaces* (1998), with samples spread by a
+//! low-discrepancy sequence in place of random ones.
+//!
+//! The same meshes give the same bits, whatever the number of threads: samples are taken in blocks of fixed
+//! size whose sums are added in order.
+
+mod nearest;
+mod sample;
+
+use crate::mesh::TriMesh;
+use glam::DVec3;
+use nearest::NearestTriangle;
+use rayon::prelude::*;
+use sample::SurfaceSampler;
+use thiserror::Error;
+
+/// Points measured by one thread at a time, and summed before they are added to the rest.
+const BLOCK_POINTS: usize = 4096;
+
+/// Fewest samples by default, so that small meshes are measured as well as large ones.
+const MIN_DEFAULT_SAMPLES: usize = 100_000;
+
+/// Distances below this, in units of the larger mesh's extent, are rounding noise and count as zero. So a
+/// mesh has distance zero from itself, and from itself with other indices.
+const NOISE: f64 = 1.0 / (1_u64 << 48) as f64;
+
+/// Settings of [`compare`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct CompareOptions {
+    /// Surface samples in each direction. Default: twice the number of vertices of the mesh sampled, at
+    /// least 100,000. The cost is proportional to it; more than 2^32 are not taken.
+    pub samples: Option<usize>,
+}
+
+impl CompareOptions {
+    /// The defaults.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes `samples` surface samples in each direction.
+    pub fn samples(mut self, samples: usize) -> Self {
+        self.samples = Some(samples);
+        self
+    }
+}
+
+/// Distance from one surface to another, in model units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Distance {
+    /// Root mean square over the area of the first surface.
+    pub rms: f64,
+    /// Maximum over the samples and vertices of the first surface.
+    pub max: f64,
+}
+
+/// What [`compare`] finds between `a` and `b`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Comparison {
+    /// From points of `a` to the surface of `b`.
+    pub forward: Distance,
+    /// From points of `b` to the surface of `a`.
+    pub backward: Distance,
+    /// Diagonal of the bounding box of `a`, all its vertices included.
+    pub diagonal: f64,
+}
+
+impl Comparison {
+    /// The larger of the two root mean squares, in model units.
+    pub fn rms(&self) -> f64 {
+        self.forward.rms.max(self.backward.rms)
+    }
+
+    /// The larger of the two maxima, in model units: the Hausdorff distance.
+    pub fn max(&self) -> f64 {
+        self.forward.max.max(self.backward.max)
+    }
+
+    /// [`rms`](Self::rms) divided by the diagonal. 0 for equal surfaces, infinite if only the diagonal is 0.
+    pub fn rms_relative(&self) -> f64 {
+        if self.rms() == 0.0 { 0.0 } else { self.rms() / self.diagonal }
+    }
+
+    /// −20 log₁₀ of [`rms_relative`](Self::rms_relative); infinite for equal surfaces.
+    pub fn psnr_db(&self) -> f64 {
+        -20.0 * self.rms_relative().log10()
+    }
+}
+
+/// Why two meshes cannot be compared.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A mesh without vertices is nowhere.
+    #[error("the {} mesh has no vertices", if *.is_first { "first" } else { "second" })]
+    Empty {
+        /// Whether it is `a` that is empty.
+        is_first: bool,
+    },
+}
+
+/// Measures the distances between the surfaces of `a` and `b`, in both directions.
+///
+/// Vertices that no triangle uses are not part of the surface. A mesh without triangles is the set of its
+/// vertices; where there is no area, because all triangles are degenerate or missing, the root mean square is
+/// over the vertices.
+///
+/// # Errors
+/// If a mesh has no vertices.
+pub fn compare(a: &TriMesh, b: &TriMesh, options: &CompareOptions) -> Result<Comparison, CompareError> {
+    let empty = |is_first| CompareError::Empty { is_first };
+    let box_a = a.bounding_box().ok_or(empty(true))?;
+    let box_b = b.bounding_box().ok_or(empty(false))?;
+    let frame = Frame::around(box_a, box_b);
+    let surface_a = Surface::new(a, &frame);
+    let surface_b = Surface::new(b, &frame);
+    let one_sided = |from: &Surface, to: &Surface| {
+        let samples = options.samples.unwrap_or(MIN_DEFAULT_SAMPLES.max(2 * from.points.len()));
+        let Distance { rms, max } = from.distance_to(to, samples);
+        Distance { rms: frame.length_to_model(rms), max: frame.length_to_model(max) }
+    };
+    let (low, high) = box_a;
+    Ok(Comparison {
+        forward: one_sided(&surface_a, &surface_b),
+        backward: one_sided(&surface_b, &surface_a),
+        diagonal: frame.length_to_model((frame.to_unit(high) - frame.to_unit(low)).length()),
+    })
+}
+
+/// The coordinates that distances are measured in: the boxes of both meshes, moved to the origin and scaled
+/// to about 1. Squares neither overflow nor vanish, and a far origin costs no digits.
+struct Frame {
+    origin: [f64; 3],
+    /// A power of two, so that scaling is exact.
+    scale: f64,
+}
+
+type Box3 = ([f64; 3], [f64; 3]);
+
+impl Frame {
+    fn around((low_a, high_a): Box3, (low_b, high_b): Box3) -> Self {
+        let origin: [f64; 3] = std::array::from_fn(|k| low_a[k].min(low_b[k]));
+        let half_extents = (0..3).map(|k| high_a[k].max(high_b[k]) / 2.0 - origin[k] / 2.0);
+        let half_extent = half_extents.fold(0.0, f64::max);
+        let exponent = if half_extent > 0.0 { half_extent.log2().floor() as i32 + 1 } else { 0 };
+        // Within the range where the scale and its inverse are both normal numbers.
+        let biased_exponent = 1023 - exponent.clamp(-1020, 1020);
+        Self { origin, scale: f64::from_bits((biased_exponent as u64) << 52) }
+    }
+
+    fn to_unit(&self, position: [f64; 3]) -> DVec3 {
+        // Halves, as the difference itself can overflow.
+        let unit = |k: usize| (position[k] / 2.0 - self.origin[k] / 2.0) * self.scale;
+        DVec3::new(unit(0), unit(1), unit(2))
+    }
+
+    fn length_to_model(&self, length: f64) -> f64 {
+        length / self.scale * 2.0
+    }
+}
+
+/// A mesh prepared for measuring, in the coordinates of a [`Frame`].
+struct Surface {
+    /// The vertices in use.
+    points: Vec<DVec3>,
+    /// Triangles, or one degenerate triangle per point if the mesh has none.
+    triangles: Vec<[DVec3; 3]>,
+}
+
+impl Surface {
+    fn new(mesh: &TriMesh, frame: &Frame) -> Self {
+        let places: Vec<DVec3> = mesh.positions().iter().map(|&p| frame.to_unit(p)).collect();
+        if mesh.num_triangles() == 0 {
+            let triangles = places.iter().map(|&p| [p; 3]).collect();
+            return Self { points: places, triangles };
+        }
+        let mut is_used = vec![false; places.len()];
+        for &v in mesh.triangles().as_flattened() {
+            is_used[v as usize] = true;
+        }
+        let triangles = mesh.triangles().iter().map(|t| t.map(|v| places[v as usize])).collect();
+        let points = places.into_iter().zip(is_used).filter_map(|(p, used)| used.then_some(p)).collect();
+        Self { points, triangles }
+    }
+
+    fn distance_to(&self, other: &Self, num_samples: usize) -> Distance {
+        let tree = NearestTriangle::new(&other.triangles);
+        let at_vertices =
+            DistanceSum::over(&tree, self.points.len(), |range| self.points[range].iter().copied());
+        let samples = SurfaceSampler::new(&self.triangles, num_samples.min(u32::MAX as usize));
+        let mut sum = match &samples {
+            Some(samples) => DistanceSum::over(&tree, samples.len(), |range| samples.points(range)),
+            None => at_vertices,
+        };
+        sum.max_squared = sum.max_squared.max(at_vertices.max_squared);
+        let rms = (sum.sum_of_squares / sum.count.max(1) as f64).sqrt();
+        Distance { rms, max: sum.max_squared.sqrt() }
+    }
+}
+
+/// Squared distances, gathered.
+#[derive(Clone, Copy, Default)]
+struct DistanceSum {
+    count: usize,
+    sum_of_squares: f64,
+    max_squared: f64,
+}
+
+impl DistanceSum {
+    /// Gathers the distances of `count` points, which `points` lists for any range of their indices.
+    fn over<P: Iterator<Item = DVec3>>(
+        tree: &NearestTriangle,
+        count: usize,
+        points: impl Fn(std::ops::Range<usize>) -> P + Sync,
+    ) -> Self {
+        let measure_block = |block: usize| {
+            let begin = block * BLOCK_POINTS;
+            let mut sum = Self::default();
+            // Neighbours in a block are often neighbours in space: the last answer bounds the next search.
+            let mut hint = 0;
+            for point in points(begin..count.min(begin + BLOCK_POINTS)) {
+                let nearest = tree.nearest(point, hint);
+                hint = nearest.triangle;
+                let squared = if nearest.squared < NOISE * NOISE { 0.0 } else { nearest.squared };
+                sum.count += 1;
+                sum.sum_of_squares += squared;
+                sum.max_squared = sum.max_squared.max(squared);
+            }
+            sum
+        };
+        let blocks: Vec<Self> =
+            (0..count.div_ceil(BLOCK_POINTS)).into_par_iter().map(measure_block).collect();
+        blocks.iter().fold(Self::default(), |total, block| Self {
+            count: total.count + block.count,
+            sum_of_squares: total.sum_of_squares + block.sum_of_squares,
+            max_squared: total.max_squared.max(block.max_squared),
+        })
+    }
+}

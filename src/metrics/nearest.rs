@@ -1,0 +1,235 @@
+//! The nearest point on a set of triangles, exactly.
+//!
+//! A binary tree of bounding boxes in one flat array, each node followed by its left subtree. The number of
+//! triangles alone gives the shape of the tree, so both halves can be built at once. A search goes into the
+//! nearer box first and leaves out boxes that are farther away than the best triangle so far.
+
+use glam::DVec3;
+
+/// Triangles in a leaf; only the last leaf has fewer.
+const LEAF_TRIANGLES: usize = 4;
+
+/// Fewer triangles than this are not worth another thread.
+const MIN_PARALLEL_TRIANGLES: usize = 8192;
+
+/// More than the depth of any tree over 2^32 triangles.
+const MAX_DEPTH: usize = 40;
+
+/// A search structure over triangles, degenerate ones included.
+pub(super) struct NearestTriangle {
+    nodes: Vec<Node>,
+    /// In the order of the leaves.
+    triangles: Vec<[DVec3; 3]>,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    /// Triangles below: `begin..begin + count`. A leaf has at most [`LEAF_TRIANGLES`].
+    begin: u32,
+    count: u32,
+}
+
+/// The answer to a search.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest {
+    /// Squared distance.
+    pub squared: f64,
+    /// The triangle, as a hint for the next search.
+    pub triangle: usize,
+}
+
+impl NearestTriangle {
+    /// `triangles` must not be empty.
+    pub fn new(triangles: &[[DVec3; 3]]) -> Self {
+        assert!(!triangles.is_empty(), "no triangle to be near to");
+        let mut triangles = triangles.to_vec();
+        let mut nodes = vec![Node::default(); num_nodes(triangles.len())];
+        build(&mut triangles, &mut nodes, 0);
+        Self { nodes, triangles }
+    }
+
+    /// The triangle nearest to `point`. `hint` is any triangle; one that is near makes the search shorter.
+    pub fn nearest(&self, point: DVec3, hint: usize) -> Nearest {
+        let mut best = Nearest { squared: squared_distance(point, &self.triangles[hint]), triangle: hint };
+        let mut waiting = [(0, 0.0); MAX_DEPTH];
+        let mut num_waiting = 1;
+        while num_waiting > 0 {
+            num_waiting -= 1;
+            let (at, box_squared) = waiting[num_waiting];
+            if box_squared >= best.squared {
+                continue;
+            }
+            let node = &self.nodes[at];
+            let begin = node.begin as usize;
+            let count = node.count as usize;
+            if count <= LEAF_TRIANGLES {
+                for (k, triangle) in self.triangles[begin..begin + count].iter().enumerate() {
+                    let squared = squared_distance(point, triangle);
+                    if squared < best.squared {
+                        best = Nearest { squared, triangle: begin + k };
+                    }
+                }
+                continue;
+            }
+            let left = at + 1;
+            let right = left + num_nodes(num_left(count));
+            let children = [left, right].map(|child| (child, self.nodes[child].squared_distance(point)));
+            let is_left_nearer = children[0].1 <= children[1].1;
+            let (nearer, farther) =
+                if is_left_nearer { (children[0], children[1]) } else { (children[1], children[0]) };
+            waiting[num_waiting] = farther;
+            waiting[num_waiting + 1] = nearer;
+            num_waiting += 2;
+        }
+        best
+    }
+}
+
+impl Node {
+    fn squared_distance(&self, point: DVec3) -> f64 {
+        (self.low - point).max(point - self.high).max(DVec3::ZERO).length_squared()
+    }
+}
+
+/// Nodes of a tree over `count` triangles: every leaf but the last is full.
+fn num_nodes(count: usize) -> usize {
+    2 * count.div_ceil(LEAF_TRIANGLES) - 1
+}
+
+/// How many of `count` triangles go to the left: half of the leaves.
+fn num_left(count: usize) -> usize {
+    count.div_ceil(LEAF_TRIANGLES) / 2 * LEAF_TRIANGLES
+}
+
+/// Sorts `triangles`, which begin at `begin` of all, into the leaves of the tree in `nodes`.
+fn build(triangles: &mut [[DVec3; 3]], nodes: &mut [Node], begin: usize) {
+    let bounds = |low: DVec3, high: DVec3, p: DVec3| (low.min(p), high.max(p));
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = triangles.as_flattened().iter().fold(none, |(low, high), &p| bounds(low, high, p));
+    let count = triangles.len();
+    nodes[0] = Node { low, high, begin: begin as u32, count: count as u32 };
+    if count <= LEAF_TRIANGLES {
+        return;
+    }
+    // Three times the centre of a triangle serves as well as the centre.
+    let centre = |t: &[DVec3; 3]| t[0] + t[1] + t[2];
+    let (low, high) = triangles.iter().map(centre).fold(none, |(low, high), p| bounds(low, high, p));
+    let axis = (high - low).max_position();
+    let num_left = num_left(count);
+    triangles.select_nth_unstable_by(num_left, |s, t| centre(s)[axis].total_cmp(&centre(t)[axis]));
+    let (left, right) = triangles.split_at_mut(num_left);
+    let (left_nodes, right_nodes) = nodes[1..].split_at_mut(num_nodes(num_left));
+    let mut build_left = || build(left, left_nodes, begin);
+    let mut build_right = || build(right, right_nodes, begin + num_left);
+    if count >= MIN_PARALLEL_TRIANGLES {
+        rayon::join(build_left, build_right);
+    } else {
+        build_left();
+        build_right();
+    }
+}
+
+/// Squared distance from `p` to a triangle: to its plane if `p` projects inside, else to the nearest edge.
+pub(super) fn squared_distance(p: DVec3, [a, b, c]: &[DVec3; 3]) -> f64 {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let normal = ab.cross(ac);
+    let normal_squared = normal.length_squared();
+    // The sine of the angle at `a`, squared. A sliver's normal is noise; its edges are as near as it is.
+    let is_sliver = normal_squared <= 1e-20 * ab.length_squared() * ac.length_squared();
+    if !is_sliver {
+        // Barycentric coordinates of the projection, times the squared normal.
+        let of_c = ab.cross(ap).dot(normal);
+        let of_b = ap.cross(ac).dot(normal);
+        if of_b >= 0.0 && of_c >= 0.0 && of_b + of_c <= normal_squared {
+            let height = ap.dot(normal);
+            return height * height / normal_squared;
+        }
+    }
+    let to_ab = squared_distance_to_segment(ap, ab);
+    let to_ac = squared_distance_to_segment(ap, ac);
+    let to_bc = squared_distance_to_segment(p - b, c - b);
+    to_ab.min(to_ac).min(to_bc)
+}
+
+/// Squared distance from `p` to the segment from the origin to `end`, which may be the origin.
+fn squared_distance_to_segment(p: DVec3, end: DVec3) -> f64 {
+    let along = p.dot(end);
+    let length_squared = end.length_squared();
+    if along <= 0.0 || length_squared == 0.0 {
+        p.length_squared()
+    } else if along >= length_squared {
+        (p - end).length_squared()
+    } else {
+        (p - end * (along / length_squared)).length_squared()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fixed sequence of points in the unit cube.
+    fn points(count: usize) -> Vec<DVec3> {
+        let mut state = 1_u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..count).map(|_| DVec3::new(unit(), unit(), unit())).collect()
+    }
+
+    #[test]
+    fn distances_to_a_triangle_by_region() {
+        let triangle = [DVec3::ZERO, 2.0 * DVec3::X, 2.0 * DVec3::Y];
+        for (point, expected) in [
+            ([0.5, 0.5, 3.0], 9.0),   // the face
+            ([0.5, 0.5, 0.0], 0.0),   // on it
+            ([-1.0, -1.0, 1.0], 3.0), // corner a
+            ([4.0, -1.0, 0.0], 5.0),  // corner b
+            ([1.0, -2.0, 0.0], 4.0),  // edge ab
+            ([-2.0, 1.0, 1.0], 5.0),  // edge ac
+            ([2.0, 2.0, 0.0], 2.0),   // edge bc
+            ([-1.0, 3.0, 0.0], 2.0),  // corner c
+        ] {
+            let squared = squared_distance(DVec3::from(point), &triangle);
+            assert!((squared - expected).abs() < 1e-12, "{point:?}: {squared} is not {expected}");
+        }
+    }
+
+    #[test]
+    fn degenerate_triangles_are_segments_and_points() {
+        let (o, x) = (DVec3::ZERO, DVec3::X);
+        let above = DVec3::new(0.25, 0.0, 2.0);
+        assert_eq!(squared_distance(above, &[o, x, o]), 4.0);
+        assert_eq!(squared_distance(above, &[o, 0.5 * x, x]), 4.0);
+        assert_eq!(squared_distance(above, &[x, o, 0.1 * x]), 4.0);
+        assert_eq!(squared_distance(above, &[x; 3]), 4.5625);
+    }
+
+    #[test]
+    fn the_tree_finds_what_brute_force_finds() {
+        for count in [1, 2, 4, 5, 8, 9, 31, 100, 1000, 20_000] {
+            let corners = points(3 * count);
+            // Some small, some large, some degenerate, some all the same.
+            let shape = |(k, t): (usize, &[DVec3; 3])| match k % 5 {
+                0 => t.map(|p| t[0] + 0.05 * p),
+                1 => [t[0], t[0], t[1]],
+                2 => [t[0]; 3],
+                3 => [DVec3::ONE; 3],
+                _ => *t,
+            };
+            let triangles: Vec<_> = corners.as_chunks::<3>().0.iter().enumerate().map(shape).collect();
+            let tree = NearestTriangle::new(&triangles);
+            for (k, point) in points(if count > 1000 { 10 } else { 200 }).into_iter().enumerate() {
+                let point = 3.0 * point - DVec3::ONE;
+                let expected =
+                    triangles.iter().map(|t| squared_distance(point, t)).fold(f64::INFINITY, f64::min);
+                let found = tree.nearest(point, k * 7919 % count);
+                assert!((found.squared - expected).abs() <= 1e-15, "{count} triangles, point {k}");
+                assert_eq!(found.squared, squared_distance(point, &tree.triangles[found.triangle]));
+            }
+        }
+    }
+}
