@@ -157,22 +157,6 @@ impl PlainBits {
         counter.update(bit, Self::LIMIT, &RECIPROCALS);
         bit
     }
-
-    /// Codes a number of any size as Elias gamma, its exponent adaptive from context `base` on:
-    /// 34 contexts are used.
-    pub(crate) fn code_number<B: BitCoder>(&mut self, coder: &mut B, base: usize, value: u32) -> Option<u32> {
-        let value = u64::from(value) + 1;
-        let exponent = value.ilog2();
-        let mut coded = 0;
-        while self.code(coder, base + coded as usize, coded < exponent) {
-            coded += 1;
-            if coded > 32 {
-                return None;
-            }
-        }
-        let low = coder.code_raw((value & ((1 << exponent) - 1)) as u32, coded);
-        u32::try_from((1_u64 << coded | u64::from(low)) - 1).ok()
-    }
 }
 
 #[cfg(test)]
@@ -197,22 +181,6 @@ mod tests {
         let mut model = MixedBit::new([7, 3], 1, 0.5, 255);
         for i in 0..20_000 {
             assert_eq!(model.code(&mut decoder, Tables::get(), [i % 7, i % 3], &[0.1], 0, false), bit_of(i));
-        }
-    }
-
-    #[test]
-    fn numbers_of_every_size_return() {
-        let values = [0, 1, 2, 3, 100, 65_535, u32::MAX - 1, u32::MAX];
-        let mut encoder = RangeEncoder::new();
-        let mut bits = PlainBits::new(34);
-        for value in values {
-            bits.code_number(&mut encoder, 0, value);
-        }
-        let bytes = encoder.finish();
-        let mut decoder = RangeDecoder::new(&bytes);
-        let mut bits = PlainBits::new(34);
-        for value in values {
-            assert_eq!(bits.code_number(&mut decoder, 0, 0), Some(value));
         }
     }
 }

@@ -8,9 +8,6 @@ const RENORMALISE_BELOW: u32 = 1 << 24;
 /// One side of the coder. Passes are written once over this trait: the encoder returns the bit it
 /// was given, the decoder ignores its argument and returns the bit it read.
 pub(crate) trait BitCoder {
-    /// True where bits are read, so that the argument of [`BitCoder::code`] means nothing.
-    const DECODING: bool;
-
     /// Codes one bit, `p1` = probability of a one in 1/65536, within 1..=65535.
     fn code(&mut self, bit: bool, p1: u32) -> bool;
 
@@ -73,8 +70,6 @@ impl RangeEncoder {
 
 #[cfg(any(feature = "encoder", test))]
 impl BitCoder for RangeEncoder {
-    const DECODING: bool = false;
-
     #[inline]
     fn code(&mut self, bit: bool, p1: u32) -> bool {
         let bound = split(self.range, p1);
@@ -124,8 +119,6 @@ impl<'a> RangeDecoder<'a> {
 }
 
 impl BitCoder for RangeDecoder<'_> {
-    const DECODING: bool = true;
-
     #[inline]
     fn code(&mut self, _: bool, p1: u32) -> bool {
         let bound = split(self.range, p1);

@@ -5,7 +5,6 @@ use super::quantise::Model;
 use crate::TriMesh;
 use crate::descriptors::{self, Window};
 use crate::mesh::Surface;
-use crate::mesh::surface::{next, prev};
 use crate::partition::{Geometry, remove_level};
 use crate::simplify::shrinking::FREE;
 use crate::simplify::{LevelRecord, ShrinkingSurface};
@@ -40,7 +39,7 @@ pub(super) fn analyse(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Hierarchy {
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
-    let unit_edge = mean_edge_in_units(mesh, model);
+    let mean_edge = descriptors::mean_edge_length(mesh) * model.unit;
     let geometry = Geometry { grid: &model.cells, positions: &model.positions };
     let mut shrinking = ShrinkingSurface::new(surface);
     let mut window = options.window;
@@ -51,7 +50,7 @@ pub(super) fn analyse(
     while wants_level(options, records.len(), shrinking.num_vertices()) {
         let fraction = 1.0 - shrinking.num_vertices() as f64 / num_vertices as f64;
         progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });
-        let scores = level.scores(&model.positions, options, &window, unit_edge);
+        let scores = level.scores(&model.positions, options, &window, mean_edge);
         let before = shrinking.num_vertices();
         let record = remove_level(options.partition, &mut shrinking, geometry, &level.vertices, &scores);
         if record.len() == 0 {
@@ -85,14 +84,6 @@ fn wants_level(options: &EncodeOptions, done: usize, num_vertices: usize) -> boo
         Some(levels) => done < levels as usize,
         None => done < MAX_LEVELS as usize && num_vertices > SMALL_BASE,
     }
-}
-
-/// Mean edge of the input in the units of `model.positions`.
-fn mean_edge_in_units(mesh: &TriMesh, model: &Model) -> f64 {
-    let scaled = model.positions.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let original = mesh.positions().iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let _ = (scaled, original);
-    descriptors::mean_edge_length(mesh)
 }
 
 /// The vertices and triangles of one level, renumbered without gaps.
@@ -151,9 +142,4 @@ impl Level {
         }
         sum / (3 * self.triangles.len().max(1)) as f64
     }
-}
-
-/// Corners of a triangle slot in order from `corner`.
-pub(super) fn corners_from(corner: u32) -> [u32; 3] {
-    [corner, next(corner), prev(corner)]
 }

@@ -8,9 +8,10 @@ use crate::{EncodeError, TriMesh};
 pub(super) struct Model {
     pub(super) grid: Grid,
     pub(super) cells: Vec<[i32; 3]>,
-    /// Coordinates of the input times a power of two that brings them near 1, so that squares
-    /// neither overflow nor vanish.
+    /// Coordinates of the input times `unit`.
     pub(super) positions: Vec<[f64; 3]>,
+    /// A power of two that brings the side near 1, so that squares neither overflow nor vanish.
+    pub(super) unit: f64,
 }
 
 /// Quantises the vertices `source` of `mesh`; there is at least one.
@@ -35,6 +36,7 @@ pub(super) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result
         grid: Grid { precision, origin: low.map(|l| l + 0.0), side },
         cells: source.iter().map(|&v| std::array::from_fn(|a| cell(at(v)[a], low[a]))).collect(),
         positions: source.iter().map(|&v| at(v).map(|x| x * unit)).collect(),
+        unit,
     })
 }
 

@@ -1,6 +1,6 @@
 //! Up the levels: the decoder's own steps, with the truth at hand.
 
-use super::analysis::{ANALYSIS_SHARE, Hierarchy, corners_from};
+use super::analysis::{ANALYSIS_SHARE, Hierarchy};
 use super::options::{EncodeOptions, Progress};
 use super::schedule::{Schedule, Step};
 use crate::bitstream::chunk::{self, kind};
@@ -11,7 +11,7 @@ use crate::passes::GridMesh;
 use crate::passes::base::{self, BaseTarget};
 use crate::passes::connectivity::{self, ConnectivityModels, ConnectivityTarget, NOT_IN_PATCH};
 use crate::passes::coordinates::{self, CoordinateModels};
-use crate::passes::patch::{CLOSED, Patches, Star, StarBuilder};
+use crate::passes::patch::{Patches, Star, StarBuilder};
 use crate::passes::refine::{self, RefineModels};
 use crate::simplify::LevelRecord;
 use std::collections::HashMap;

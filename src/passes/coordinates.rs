@@ -220,7 +220,7 @@ impl Surroundings {
         let mut ring_sum = [0_i32; 2];
         let mut tip_sum = [0_i32; 2];
         let mut num_tips = 0;
-        let mut meet = |sum: &mut [i32; 2], v: u32| {
+        let meet = |sum: &mut [i32; 2], v: u32| {
             let r = mesh.roughness[v as usize];
             sum[0] += i32::from(r[0]);
             sum[1] += i32::from(r[1]);
