@@ -81,7 +81,7 @@ mod tests {
             f64::from(seed >> 8) / f64::from(1 << 24) - 0.5
         };
         let mut error = 0.0;
-        for _ in 0..3000 {
+        for _ in 0..30_000 {
             let outlook = Outlook {
                 mean: [random(), random(), random()],
                 features: std::array::from_fn(|_| [random(), random(), random()]),
