@@ -18,7 +18,7 @@ const NUM_CUES: usize = 7;
 /// Smallest length that counts in a logarithm, in grid steps.
 const FLOOR: f64 = 0.35;
 /// Typical residual over the exponential of its mean logarithm.
-const SCALE_FACTOR: f64 = 1.2;
+const SCALE_FACTOR: f64 = 0.85;
 /// Step of the scale models.
 const SCALE_RATE: f64 = 0.02;
 /// Step of the experts' weights, and the least weight.
