@@ -1,0 +1,11 @@
+//! The command line: one file per subcommand, on the public API of the library.
+
+pub mod args;
+pub mod encode;
+pub mod exit;
+mod input;
+mod output;
+mod passes;
+mod quantity;
+pub mod ui;
+mod verify;
