@@ -22,5 +22,7 @@ fn dispatch(args: &Args, ui: &Ui) -> anyhow::Result<()> {
     }
     match &args.command {
         Command::Encode(args) => cli::encode::run(args, ui),
+        Command::Decode(args) => cli::decode::run(args, ui),
+        Command::Info(args) => cli::info::run(args),
     }
 }

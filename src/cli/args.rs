@@ -4,7 +4,7 @@ use super::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Parser, Subcommand, value_parser};
 use lwc::descriptors::{Descriptor, Window};
-use lwc::{EncodeOptions, Partition};
+use lwc::{EncodeOptions, Limits, Partition};
 use std::path::PathBuf;
 
 /// Progressive codec for triangle meshes: one small file that can be cut anywhere.
@@ -36,6 +36,8 @@ pub struct Global {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Encode(Encode),
+    Decode(Decode),
+    Info(Info),
 }
 
 /// Encode a mesh file (.obj .ply .stl, each also as .zst).
@@ -109,6 +111,67 @@ impl Scale {
     }
 }
 
+/// Decode a stream, or as much of it as there is.
+///
+/// A stream that ends early gives a coarser mesh, with a note on standard error.
+#[derive(Debug, clap::Args)]
+pub struct Decode {
+    /// Stream to decode; standard input if it is `-` or missing.
+    #[arg(value_name = "FILE.lwc")]
+    pub input: Option<PathBuf>,
+    /// Mesh to write, its ending is its format (.obj .ply .stl, each also with .zst); `-` for standard
+    /// output. Default: model.level5.obj with `--level 5`, model.decoded.obj without, beside model.lwc.
+    ///
+    /// A file that exists is replaced once the new one is complete; the input is never replaced.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Stop at this level; 0 is the base mesh. Default: the finest.
+    #[arg(short, long, value_name = "K", allow_negative_numbers = true)]
+    pub level: Option<u32>,
+    /// Decode the first N bytes only, e.g. 5000 or 20K. Default: all.
+    #[arg(short, long, value_name = "N", value_parser = quantity::bytes, allow_negative_numbers = true)]
+    pub bytes: Option<u64>,
+    /// Format on standard output and of the default name. Default: obj.
+    #[arg(long, value_name = "FORMAT", value_parser = format_parser())]
+    pub format: Option<lwc::io::Format>,
+    /// Write the finest sound mesh of a damaged stream, and succeed with a warning.
+    #[arg(long)]
+    pub salvage: bool,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
+
+/// What a stream may ask for.
+#[derive(Debug, clap::Args)]
+pub struct LimitArgs {
+    /// Most memory that decoding may take, e.g. 512M.
+    #[arg(long, value_name = "BYTES", default_value = "4G", value_parser = quantity::bytes, allow_negative_numbers = true)]
+    pub max_memory: u64,
+    /// Most vertices that may be decoded, e.g. 2M.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().max_vertices)]
+    #[arg(value_parser = quantity::count, allow_negative_numbers = true)]
+    pub max_vertices: u32,
+}
+
+impl LimitArgs {
+    pub fn limits(&self) -> Limits {
+        Limits { max_memory: self.max_memory, max_vertices: self.max_vertices, ..Limits::default() }
+    }
+}
+
+/// Show levels, passes and parameters of a stream without decoding it.
+///
+/// Works on a stream that was cut, once its table of passes is there.
+#[derive(Debug, clap::Args)]
+pub struct Info {
+    /// Stream to look at; standard input if it is `-` or missing.
+    #[arg(value_name = "FILE.lwc")]
+    pub input: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Number of levels, `None` for `auto`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Levels(pub Option<u32>);
@@ -131,6 +194,13 @@ fn partition_parser() -> impl TypedValueParser<Value = Partition> {
         .try_map(|name| Partition::ALL.into_iter().find(|p| p.name() == name).ok_or("unknown partition"))
 }
 
+fn format_parser() -> impl TypedValueParser<Value = lwc::io::Format> {
+    use lwc::io::Format;
+    let all = [Format::Obj, Format::Ply, Format::Stl];
+    PossibleValuesParser::new(all.map(Format::extension))
+        .try_map(move |name| all.into_iter().find(|f| f.extension() == name).ok_or("unknown format"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,7 +214,10 @@ mod tests {
     #[test]
     fn defaults_are_those_of_the_library() {
         let args = Args::try_parse_from(["lwc", "encode", "x.ply"]).unwrap();
-        let Command::Encode(encode) = args.command;
+        let Command::Encode(encode) = args.command else { panic!("not encode") };
         assert_eq!(encode.options(), EncodeOptions::default());
+        let args = Args::try_parse_from(["lwc", "decode", "x.lwc"]).unwrap();
+        let Command::Decode(decode) = args.command else { panic!("not decode") };
+        assert_eq!(decode.limits.limits(), Limits::default());
     }
 }

@@ -1,8 +1,10 @@
 //! The command line: one file per subcommand, on the public API of the library.
 
 pub mod args;
+pub mod decode;
 pub mod encode;
 pub mod exit;
+pub mod info;
 mod input;
 mod output;
 mod passes;
