@@ -24,5 +24,7 @@ fn dispatch(args: &Args, ui: &Ui) -> anyhow::Result<()> {
         Command::Encode(args) => cli::encode::run(args, ui),
         Command::Decode(args) => cli::decode::run(args, ui),
         Command::Info(args) => cli::info::run(args),
+        Command::Describe(args) => cli::describe::run(args, ui),
+        Command::Compare(args) => cli::compare::run(args, ui),
     }
 }

@@ -38,6 +38,8 @@ pub enum Command {
     Encode(Encode),
     Decode(Decode),
     Info(Info),
+    Describe(Describe),
+    Compare(Compare),
 }
 
 /// Encode a mesh file (.obj .ply .stl, each also as .zst).
@@ -170,6 +172,45 @@ pub struct Info {
     /// Print one JSON object.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Evaluate a descriptor at every vertex of a mesh.
+///
+/// Writes the header `vertex,value` and one line per vertex, in the order of the file, with all digits.
+/// Vertices without faces have the value 0.
+#[derive(Debug, clap::Args)]
+pub struct Describe {
+    /// Mesh to describe.
+    #[arg(value_name = "MESH")]
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub scale: Scale,
+    /// Table to write (.csv), `-` for standard output.
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    pub output: PathBuf,
+}
+
+/// Measure the distance between two surfaces.
+///
+/// Root mean square and maximum of the distance to the nearest point of the other, in both directions.
+/// Each file is a mesh (.obj .ply .stl, each also as .zst) or a stream (.lwc).
+#[derive(Debug, clap::Args)]
+pub struct Compare {
+    /// Reference: relative values are divided by the diagonal of its bounding box.
+    #[arg(value_name = "A")]
+    pub a: PathBuf,
+    /// What to compare with it.
+    #[arg(value_name = "B")]
+    pub b: PathBuf,
+    /// Surface samples in each direction, e.g. 500K, at most 4G. Default: two per vertex, at least
+    /// 100,000.
+    #[arg(long, value_name = "N", value_parser = quantity::count, allow_negative_numbers = true)]
+    pub samples: Option<u32>,
+    /// Print one JSON object; `db` is null if the surfaces are identical.
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub limits: LimitArgs,
 }
 
 /// Number of levels, `None` for `auto`.
