@@ -43,13 +43,13 @@ pub(crate) struct Geometry<'a> {
 }
 
 /// Share of the vertices, the most salient ones, that `Balanced` keeps at every level.
-const PROTECTED_SHARE: f64 = 0.2;
+const PROTECTED_SHARE: f64 = 0.05;
 /// Classes of saliency among the rest.
 const SALIENCY_CLASSES: f64 = 4.0;
 /// Valences that a class of saliency is worth.
-const CLASS_WEIGHT: f64 = 0.5;
+const CLASS_WEIGHT: f64 = 0.0;
 /// Largest valence that `Balanced` removes.
-const MAX_VALENCE: u32 = 8;
+const MAX_VALENCE: u32 = 6;
 
 /// Removes one level of odd vertices. `vertices` are those of the level and `scores` their
 /// descriptor values, in the same order.

@@ -4,6 +4,7 @@ pub(crate) mod bytes;
 pub(crate) mod chunk;
 pub(crate) mod header;
 pub(crate) mod mixer;
+pub(crate) mod mixture;
 pub(crate) mod range_coder;
 pub(crate) mod residual;
 pub(crate) mod tables;

@@ -4,6 +4,7 @@
 //! binary decision goes into the mixer beside the adaptive contexts, which correct its shape.
 
 use super::mixer::MixedBit;
+use super::mixture::{Expert, Mixture, NUM_EXPERTS};
 use super::range_coder::{BitCoder, PROBABILITY_ONE};
 use super::tables::Tables;
 
@@ -17,21 +18,16 @@ pub(crate) const NUM_KINDS: usize = 3;
 const SCALE_BUCKETS: usize = 64;
 const OFFSET_BUCKETS: usize = 8;
 const EXPONENTS: usize = 32;
-/// Widths and weight of the two logistic densities that make the prediction, relative to the scale.
-const NARROW: f64 = 0.8;
-const WIDE: f64 = 2.4;
-const NARROW_SHARE: f64 = 0.75;
 /// Mantissa bits below the leading one that have models; the rest follow the density alone.
 const MODELLED_MANTISSA: u32 = 2;
 
 /// What is known of an integer before it is coded.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Expectation {
-    /// Most likely value, within ±2³⁰.
-    pub(crate) centre: f64,
-    /// Typical distance from it, in the integer's units.
-    pub(crate) scale: f64,
-    /// Base-2 logarithm of `scale`.
+pub(crate) struct Expectation<'a> {
+    pub(crate) experts: &'a [Expert; NUM_EXPERTS],
+    /// The expert from whose centre the integer is counted.
+    pub(crate) best: usize,
+    /// Base-2 logarithm of that expert's scale.
     pub(crate) log_scale: f64,
     /// Which of the [`NUM_KINDS`] kinds of number it is.
     pub(crate) kind: usize,
@@ -81,11 +77,12 @@ impl ResidualModel {
     pub(crate) fn code<B: BitCoder>(
         &mut self,
         coder: &mut B,
-        tables: &Tables,
         expected: &Expectation,
         value: i32,
     ) -> Option<i32> {
-        let Expectation { centre, scale, log_scale, kind, contexts, sign } = *expected;
+        let tables = Tables::get();
+        let Expectation { experts, best, log_scale, kind, contexts, sign } = *expected;
+        let centre = experts[best].centre;
         let nearest = (centre + 0.5).floor();
         let fraction = centre - nearest;
         let base = nearest as i64;
@@ -94,13 +91,14 @@ impl ResidualModel {
         let offset = fraction.abs();
         let residual = if mirrored { base - i64::from(value) } else { i64::from(value) - base };
 
-        let density = Density::new(tables, scale);
+        let mut mixture = Mixture::new(tables, experts, nearest, mirrored);
+        let total = mixture.total();
         let bucket = ((log_scale * 4.0 + 12.0) as usize).min(SCALE_BUCKETS - 1);
         let offset_bucket = ((offset * (2 * OFFSET_BUCKETS) as f64) as usize).min(OFFSET_BUCKETS - 1);
         let by_scale = kind * SCALE_BUCKETS + bucket;
 
-        let (up, down) = (density.above(0.5 - offset), density.above(0.5 + offset));
-        let p_zero = 1.0 - up - down;
+        let (up, down) = (mixture.above(0.5), mixture.below(-0.5));
+        let p_zero = (total - up - down) / total;
         let zero = self.zero.code(
             coder,
             tables,
@@ -122,14 +120,16 @@ impl ResidualModel {
             kind,
             residual > 0,
         );
-        let offset = if positive { offset } else { -offset };
+        if !positive {
+            mixture.flip();
+        }
         let magnitude = residual.unsigned_abs();
 
         // Exponent, one step at a time: is the magnitude at least 2^(exponent + 1)?
         let mut exponent = 0_u32;
         let mut tail = if positive { up } else { down };
         loop {
-            let next_tail = density.above((2_u64 << exponent) as f64 - 0.5 - offset);
+            let next_tail = mixture.above((2_u64 << exponent) as f64 - 0.5);
             let e = exponent as usize;
             let more = self.more.code(
                 coder,
@@ -157,8 +157,7 @@ impl ResidualModel {
             let half = 1_u64 << (exponent - 1 - depth);
             let middle = low + half;
             let bit = magnitude >= middle;
-            let upper = density.above(middle as f64 - 0.5 - offset)
-                - density.above((middle + half) as f64 - 0.5 - offset);
+            let upper = mixture.above(middle as f64 - 0.5) - mixture.above((middle + half) as f64 - 0.5);
             let p_upper = upper / mass;
             let upper_half = if depth < MODELLED_MANTISSA {
                 let d = depth as usize * EXPONENTS + exponent as usize;
@@ -187,33 +186,18 @@ impl ResidualModel {
     }
 }
 
-/// Symmetric density around 0: a narrow and a wide logistic.
-struct Density<'a> {
-    tables: &'a Tables,
-    narrow: f64,
-    wide: f64,
-}
-
-impl<'a> Density<'a> {
-    fn new(tables: &'a Tables, scale: f64) -> Self {
-        Self { tables, narrow: 1.0 / (NARROW * scale), wide: 1.0 / (WIDE * scale) }
-    }
-
-    /// Mass above `x`.
-    #[inline]
-    fn above(&self, x: f64) -> f64 {
-        NARROW_SHARE * self.tables.tail(x * self.narrow)
-            + (1.0 - NARROW_SHARE) * self.tables.tail(x * self.wide)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
 
-    fn expectation(centre: f64, scale: f64) -> Expectation {
-        Expectation { centre, scale, log_scale: scale.log2(), kind: 1, contexts: [3, 5], sign: 2 }
+    fn experts(centre: f64, scale: f64) -> [Expert; NUM_EXPERTS] {
+        [Expert { centre, scale, weight: 0.4 }; NUM_EXPERTS]
+    }
+
+    fn expectation(experts: &[Expert; NUM_EXPERTS]) -> Expectation<'_> {
+        let log_scale = experts[1].scale.log2();
+        Expectation { experts, best: 1, log_scale, kind: 1, contexts: [3, 5], sign: 2 }
     }
 
     #[test]
@@ -224,19 +208,21 @@ mod tests {
         let mut cases = Vec::new();
         for value in values {
             for centre in centres {
-                cases.extend(scales.map(|scale| (value, expectation(centre, scale))));
+                cases.extend(scales.map(|scale| (value, experts(centre, scale))));
             }
         }
         let mut encoder = RangeEncoder::new();
         let mut model = ResidualModel::new();
-        for (value, expected) in &cases {
-            assert_eq!(model.code(&mut encoder, Tables::get(), expected, *value), Some(*value));
+        for (value, experts) in &cases {
+            let expected = &expectation(experts);
+            assert_eq!(model.code(&mut encoder, expected, *value), Some(*value));
         }
         let bytes = encoder.finish();
         let mut decoder = RangeDecoder::new(&bytes);
         let mut model = ResidualModel::new();
-        for (value, expected) in &cases {
-            assert_eq!(model.code(&mut decoder, Tables::get(), expected, 0), Some(*value), "{expected:?}");
+        for (value, experts) in &cases {
+            let expected = &expectation(experts);
+            assert_eq!(model.code(&mut decoder, expected, 0), Some(*value), "{expected:?}");
         }
     }
 
@@ -245,7 +231,7 @@ mod tests {
         let mut encoder = RangeEncoder::new();
         let mut model = ResidualModel::new();
         for i in 0..10_000 {
-            model.code(&mut encoder, Tables::get(), &expectation(f64::from(i) + 0.1, 0.1), i);
+            model.code(&mut encoder, &expectation(&experts(f64::from(i) + 0.1, 0.1)), i);
         }
         assert!(encoder.finish().len() < 60);
     }

@@ -1,18 +1,19 @@
-//! Affine prediction with weights learnt on the way: recursive least squares with forgetting, one
-//! filter per class of vertex, the same weights for the three coordinates.
+//! Affine prediction with weights learnt on the way: recursive least squares with forgetting.
 
 use super::neighbourhood::{NUM_FEATURES, Outlook};
-use super::vec3::{Vec3, add, scale, sub};
+use super::vec3::{Vec3, dot};
 
 /// Weights before anything is learnt: on a smooth surface half way towards the parallelograms.
 const INITIAL_WEIGHTS: [f64; NUM_FEATURES] = [0.5, 0.35, 0.0, 0.0];
 /// Variance of the initial weights over that of the noise.
 const INITIAL_TRUST: f64 = 10.0;
-const FORGETTING: f64 = 0.9995;
+const FORGETTING: f64 = 0.999;
 /// Largest entry of the covariance; keeps forgetting from blowing it up where nothing is learnt.
-const MAX_TRUST: f64 = 1e4;
+const MAX_TRUST: f64 = 1e6;
+/// Larger weights mean that the filter has lost its footing.
+const MAX_WEIGHT: f64 = 1e3;
 
-/// A recursive least-squares filter.
+/// A recursive least-squares filter for the position of a vertex along one direction.
 #[derive(Clone)]
 pub(crate) struct AffineFilter {
     weights: [f64; NUM_FEATURES],
@@ -28,37 +29,27 @@ impl AffineFilter {
         Self { weights: INITIAL_WEIGHTS, covariance }
     }
 
-    /// The ring mean with its weighted corrections.
-    pub(crate) fn predict(&self, outlook: &Outlook) -> Vec3 {
-        let mut p = outlook.mean;
-        for (feature, &weight) in outlook.features.iter().zip(&self.weights) {
-            p = add(p, scale(*feature, weight));
-        }
-        p
+    /// Where the vertex should be along `direction`: the ring mean with its weighted corrections.
+    pub(crate) fn predict(&self, outlook: &Outlook, direction: Vec3) -> f64 {
+        let x = outlook.features.map(|f| dot(f, direction));
+        dot(outlook.mean, direction) + sum(self.weights, x)
     }
 
-    /// Learns where the vertex really is, once per coordinate. Lengths count relative to the ring.
-    pub(crate) fn learn(&mut self, outlook: &Outlook, truth: Vec3) {
+    /// Learns where it is. Lengths count relative to the ring.
+    pub(crate) fn learn(&mut self, outlook: &Outlook, direction: Vec3, truth: f64) {
         let per_length = 1.0 / outlook.length;
-        let offset = scale(sub(truth, outlook.mean), per_length);
-        for axis in 0..3 {
-            let x: [f64; NUM_FEATURES] = std::array::from_fn(|i| outlook.features[i][axis] * per_length);
-            let px: [f64; NUM_FEATURES] = std::array::from_fn(|i| sum4(self.covariance[i], x));
-            let gain = 1.0 / (FORGETTING + sum4(x, px));
-            let error = offset[axis] - sum4(self.weights, x);
-            for i in 0..NUM_FEATURES {
-                self.weights[i] += px[i] * gain * error;
-                for j in 0..NUM_FEATURES {
-                    self.covariance[i][j] -= px[i] * px[j] * gain;
-                }
+        let x = outlook.features.map(|f| dot(f, direction) * per_length);
+        let px: [f64; NUM_FEATURES] = std::array::from_fn(|i| sum(self.covariance[i], x));
+        let gain = 1.0 / (1.0 + sum(x, px));
+        let error = (truth - dot(outlook.mean, direction)) * per_length - sum(self.weights, x);
+        for i in 0..NUM_FEATURES {
+            self.weights[i] += px[i] * gain * error;
+            for j in 0..NUM_FEATURES {
+                self.covariance[i][j] -= px[i] * px[j] * gain;
             }
         }
-        let grows = (0..NUM_FEATURES).all(|i| self.covariance[i][i] < MAX_TRUST);
-        if grows {
-            self.covariance
-                .iter_mut()
-                .flatten()
-                .for_each(|c| *c *= 1.0 / (FORGETTING * FORGETTING * FORGETTING));
+        if (0..NUM_FEATURES).all(|i| self.covariance[i][i] < MAX_TRUST) {
+            self.covariance.iter_mut().flatten().for_each(|c| *c *= 1.0 / FORGETTING);
         }
         if !self.is_sound() {
             *self = Self::new();
@@ -66,12 +57,13 @@ impl AffineFilter {
     }
 
     fn is_sound(&self) -> bool {
-        self.weights.iter().all(|w| w.abs() < 1e3) && (0..NUM_FEATURES).all(|i| self.covariance[i][i] > 0.0)
+        self.weights.iter().all(|w| w.abs() < MAX_WEIGHT)
+            && (0..NUM_FEATURES).all(|i| self.covariance[i][i] > 0.0)
     }
 }
 
 #[inline]
-fn sum4(a: [f64; NUM_FEATURES], b: [f64; NUM_FEATURES]) -> f64 {
+fn sum(a: [f64; NUM_FEATURES], b: [f64; NUM_FEATURES]) -> f64 {
     (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
 }
 
@@ -89,17 +81,18 @@ mod tests {
             f64::from(seed >> 8) / f64::from(1 << 24) - 0.5
         };
         let mut error = 0.0;
-        for _ in 0..3000 {
+        for _ in 0..30_000 {
             let outlook = Outlook {
                 mean: [random(), random(), random()],
                 features: std::array::from_fn(|_| [random(), random(), random()]),
                 normal: [0.0; 3],
                 length: 1.0,
             };
-            let truth =
-                (0..NUM_FEATURES).fold(outlook.mean, |p, i| add(p, scale(outlook.features[i], rule[i])));
-            error = super::super::vec3::norm(sub(filter.predict(&outlook), truth));
-            filter.learn(&outlook, truth);
+            let direction = [random(), random(), random()];
+            let offset: f64 = (0..NUM_FEATURES).map(|i| rule[i] * dot(outlook.features[i], direction)).sum();
+            let truth = dot(outlook.mean, direction) + offset;
+            error = (filter.predict(&outlook, direction) - truth).abs();
+            filter.learn(&outlook, direction, truth);
         }
         assert!(error < 1e-6, "{error}");
     }
@@ -109,10 +102,9 @@ mod tests {
         let mut filter = AffineFilter::new();
         let outlook = Outlook { mean: [0.0; 3], features: [[1e200; 3]; 4], normal: [0.0; 3], length: 1e-3 };
         for _ in 0..10 {
-            filter.learn(&outlook, [1e9; 3]);
+            filter.learn(&outlook, [1.0; 3], 1e9);
         }
-        assert!(
-            filter.predict(&Outlook { features: [[1.0; 3]; 4], ..outlook }).iter().all(|c| c.is_finite())
-        );
+        let tame = Outlook { features: [[1.0; 3]; 4], ..outlook };
+        assert!(filter.predict(&tame, [1.0; 3]).is_finite());
     }
 }

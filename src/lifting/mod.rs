@@ -2,5 +2,6 @@
 //! (`format/SPEC.md`, section 8). Basic arithmetic in a fixed order only.
 
 pub(crate) mod affine;
+pub(crate) mod consensus;
 pub(crate) mod neighbourhood;
 pub(crate) mod vec3;

@@ -3,6 +3,7 @@
 
 use super::{GridMesh, Malformed};
 use crate::bitstream::mixer::PlainBits;
+use crate::bitstream::mixture::{Expert, NUM_EXPERTS};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::residual::{Expectation, NUM_KINDS, ResidualModel};
 use crate::bitstream::tables::Tables;
@@ -231,16 +232,17 @@ impl<'a> Grower<'a> {
         let mut size = 0.0;
         for axis in 0..3 {
             let scale = self.mean_size[kind].max(0.3);
+            let experts = [Expert { centre: guess[axis], scale, weight: 0.4 }; NUM_EXPERTS];
             let expected = Expectation {
-                centre: guess[axis],
-                scale,
+                experts: &experts,
+                best: 0,
                 log_scale: tables.log2(scale),
                 kind,
                 contexts: [axis, 3],
                 sign: 2 * axis,
             };
             let value = wanted_position.map_or(0, |p| p[axis]);
-            let value = self.residuals.code(coder, tables, &expected, value);
+            let value = self.residuals.code(coder, &expected, value);
             position[axis] = value
                 .filter(|v| (0..self.limit).contains(v))
                 .ok_or(Malformed("a base vertex lies outside the grid"))?;

@@ -8,8 +8,10 @@
 pub(crate) mod base;
 pub(crate) mod connectivity;
 pub(crate) mod coordinates;
+pub(crate) mod guess;
 pub(crate) mod patch;
 pub(crate) mod refine;
+pub(crate) mod surroundings;
 
 use crate::mesh::Surface;
 

@@ -1,38 +1,31 @@
 //! One more bit of precision for every vertex (`format/SPEC.md`, section 7.5).
 
 use super::GridMesh;
+use super::guess::{GuessModels, NUM_KINDS, VertexGuess};
+use super::surroundings::{NUM_CLASSES, Surroundings};
 use crate::bitstream::mixer::MixedBit;
+use crate::bitstream::mixture::Mixture;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
-use crate::lifting::affine::AffineFilter;
-use crate::lifting::neighbourhood::{Neighbourhood, Tip};
-use crate::lifting::vec3::from_grid;
-use crate::mesh::surface::{NO_CORNER, next, prev};
 
-const NUM_CLASSES: usize = 8;
-const OPEN_CLASS: usize = 7;
+/// Buckets of the centre's distance from the boundary between the halves of a cell.
 const OFFSETS: usize = 32;
+const OFFSETS_PER_STEP: f64 = 6.0;
 const SCALES: usize = 16;
-/// Rate at which the running error of a class follows.
-const ERROR_RATE: f64 = 0.01;
-/// Longest ring that is looked at; a vertex with more neighbours is coded without prediction.
-const MAX_RING: usize = 64;
+const LIMIT: u32 = 400;
+/// Least mass within a cell: a prediction that lies far away says nothing of its halves.
+const LEAST_MASS: f64 = 1e-9;
 
 /// Adaptive models, kept from pass to pass.
 pub(crate) struct RefineModels {
-    predictors: Vec<AffineFilter>,
-    /// Mean size of the error of the prediction over the ring's length, per class.
-    errors: Vec<f64>,
-    bit: MixedBit<3>,
+    guesses: GuessModels,
+    bit: MixedBit<4>,
 }
 
 impl RefineModels {
     pub(crate) fn new() -> Self {
-        Self {
-            predictors: vec![AffineFilter::new(); NUM_CLASSES],
-            errors: vec![0.1; NUM_CLASSES],
-            bit: MixedBit::new([OFFSETS * SCALES, OFFSETS * NUM_CLASSES, OFFSETS * 3], 3, 0.6, 400),
-        }
+        let sizes = [OFFSETS * SCALES, OFFSETS * NUM_CLASSES, OFFSETS * NUM_KINDS, OFFSETS * SCALES];
+        Self { guesses: GuessModels::new(), bit: MixedBit::new(sizes, NUM_KINDS, 0.4, LIMIT) }
     }
 }
 
@@ -45,69 +38,39 @@ pub(crate) fn code<B: BitCoder>(
     target: Option<&[[i32; 3]]>,
 ) {
     let tables = Tables::get();
-    let mut corners = Vec::new();
-    let mut neighbourhood = Neighbourhood::default();
-    for p in mesh.positions.iter_mut().flatten() {
-        *p *= 2;
-    }
+    let mut surroundings = Surroundings::default();
+    mesh.positions.iter_mut().flatten().for_each(|c| *c *= 2);
     for v in 0..mesh.positions.len() {
-        let class = gather(mesh, v, &mut corners, &mut neighbourhood);
-        let outlook = neighbourhood.outlook();
-        let predicted = models.predictors[class].predict(&outlook);
-        let scale = (models.errors[class] * outlook.length).clamp(0.1, 1e9);
-        let scale_level = ((tables.log2(scale) + 3.5) * 2.0).clamp(0.0, (SCALES - 1) as f64) as usize;
-        let wanted = target.map_or([0; 3], |t| t[v]);
-        let mut size = 0.0;
-        for axis in 0..3 {
-            let low = mesh.positions[v][axis];
-            // The boundary between the two halves, in units where cells have integer centres.
-            let offset = predicted[axis] - (f64::from(low) + 0.5);
-            let bucket = ((offset * 6.0 + OFFSETS as f64 / 2.0).clamp(0.0, (OFFSETS - 1) as f64)) as usize;
-            let above = |x: f64| tables.tail((x - offset) / scale);
-            let (lower, middle, upper) = (above(-1.0), above(0.0), above(1.0));
-            let p_upper = (middle - upper) / (lower - upper).max(1e-12);
-            let bit = models.bit.code(
-                coder,
-                tables,
-                [bucket * SCALES + scale_level, bucket * NUM_CLASSES + class, bucket * 3 + axis],
-                &[tables.stretch_real(p_upper.clamp(0.02, 0.98))],
-                axis,
-                wanted[axis] > low,
-            );
-            mesh.positions[v][axis] = low + i32::from(bit);
-            size += (f64::from(mesh.positions[v][axis]) - predicted[axis]).abs();
+        surroundings.gather_refined(mesh, v);
+        let mut vertex = VertexGuess::new(&surroundings);
+        let class = surroundings.class();
+        for kind in 0..NUM_KINDS {
+            let guess = vertex.coordinate(&models.guesses, kind);
+            let low = mesh.positions[v][guess.axis];
+            let middle = f64::from(low) + 0.5;
+            let mixture = Mixture::new(tables, &guess.experts, middle, false);
+            let (lower, upper) =
+                (mixture.above(-1.0) - mixture.above(0.0), mixture.above(0.0) - mixture.above(1.0));
+            let bucket = |centre: f64| {
+                ((centre - middle) * OFFSETS_PER_STEP + 0.5 * OFFSETS as f64).clamp(0.0, (OFFSETS - 1) as f64)
+                    as usize
+            };
+            let best = bucket(guess.experts[guess.best].centre);
+            let scale = ((guess.log_scale + 3.0) * 2.0).clamp(0.0, (SCALES - 1) as f64) as usize;
+            let spread = ((guess.by_spread + 1.5) * 2.0).clamp(0.0, (SCALES - 1) as f64) as usize;
+            let contexts = [
+                best * SCALES + scale,
+                bucket(guess.experts[0].centre) * NUM_CLASSES + class,
+                bucket(guess.experts[1].centre) * NUM_KINDS + kind,
+                bucket(guess.experts[2].centre) * SCALES + spread,
+            ];
+            let p_upper = (upper + 0.5 * LEAST_MASS) / (lower + upper + LEAST_MASS);
+            let wanted = target.is_some_and(|t| t[v][guess.axis] > low);
+            let direct = [tables.stretch_real(p_upper)];
+            let bit = models.bit.code(coder, tables, contexts, &direct, kind, wanted);
+            let value = low + i32::from(bit);
+            mesh.positions[v][guess.axis] = value;
+            vertex.settle(&mut models.guesses, &guess, value);
         }
-        let ratio = (size / 3.0 / outlook.length).min(1.0);
-        models.errors[class] += (ratio - models.errors[class]) * ERROR_RATE;
-        models.predictors[class].learn(&outlook, from_grid(mesh.positions[v]));
     }
-}
-
-/// Fills the neighbourhood of `v`: refined vertices in their cells, the others in the middle of
-/// theirs. Returns the class of its predictor.
-fn gather(mesh: &GridMesh, v: usize, corners: &mut Vec<u32>, neighbourhood: &mut Neighbourhood) -> usize {
-    let surface = &mesh.surface;
-    let at = |u: u32| {
-        let p = from_grid(mesh.positions[u as usize]);
-        if (u as usize) < v { p } else { p.map(|c| c + 0.5) }
-    };
-    neighbourhood.clear();
-    if surface.valence[v] as usize > MAX_RING {
-        neighbourhood.ring.push(at(v as u32));
-        return OPEN_CLASS;
-    }
-    let closed = surface.fan(surface.corner_of[v], corners);
-    for &corner in corners.iter() {
-        neighbourhood.ring.push(at(surface.vertex(next(corner))));
-        let across = surface.across(corner);
-        neighbourhood.tips.push(if across == NO_CORNER {
-            Tip::None
-        } else {
-            Tip::Fine(at(surface.vertex(across)))
-        });
-    }
-    if !closed && let Some(&last) = corners.last() {
-        neighbourhood.ring.push(at(surface.vertex(prev(last))));
-    }
-    if closed { (surface.valence[v] as usize).clamp(3, 9) - 3 } else { OPEN_CLASS }
 }

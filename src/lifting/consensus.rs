@@ -1,0 +1,126 @@
+//! Robust prediction: what most of many simple guesses agree on.
+//!
+//! On a regular stretch of a mesh (a scan's lattice, a CAD face) the middle of two opposite
+//! neighbours and each parallelogram name the vertex almost exactly, save the few that reach across
+//! an irregularity or a crease. Their mean is spoilt by those, their median and their mode are not.
+
+use super::neighbourhood::{Neighbourhood, Tip};
+use super::vec3::{Vec3, dot};
+
+/// Guesses that are looked at; the rest of a large ring is left out.
+const MAX_GUESSES: usize = 24;
+/// With at least this many guesses the mode is the closest three, else the closest two.
+const ENOUGH_FOR_THREE: usize = 5;
+
+/// Agreement of the guesses along one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Consensus {
+    pub(crate) median: f64,
+    /// Distance between the quartiles.
+    pub(crate) spread: f64,
+    /// Centre of the closest guesses.
+    pub(crate) mode: f64,
+    /// Distance between the outer ones of them.
+    pub(crate) width: f64,
+}
+
+/// Gathers the guesses along `direction`: `affine`, the middles of opposite neighbours (closed rings
+/// of even size), and the parallelograms over true outer vertices.
+pub(crate) fn consensus(neighbourhood: &Neighbourhood, direction: Vec3, affine: f64) -> Consensus {
+    let mut guesses = Sorted { values: [0.0; MAX_GUESSES], count: 0 };
+    let ring = &neighbourhood.ring;
+    let degree = ring.len();
+    guesses.insert(affine);
+    if neighbourhood.is_closed() && degree.is_multiple_of(2) {
+        for i in 0..(degree / 2).min(MAX_GUESSES / 2) {
+            guesses.insert(0.5 * (dot(ring[i], direction) + dot(ring[i + degree / 2], direction)));
+        }
+    }
+    for (i, tip) in neighbourhood.tips.iter().enumerate().take(MAX_GUESSES) {
+        if let Tip::Fine(tip) = *tip {
+            let (p, q) = (ring[i], ring[if i + 1 == degree { 0 } else { i + 1 }]);
+            guesses.insert(dot(p, direction) + dot(q, direction) - dot(tip, direction));
+        }
+    }
+    guesses.consensus()
+}
+
+/// A short sorted list.
+struct Sorted {
+    values: [f64; MAX_GUESSES],
+    count: usize,
+}
+
+impl Sorted {
+    fn insert(&mut self, value: f64) {
+        if self.count == MAX_GUESSES {
+            return;
+        }
+        let mut i = self.count;
+        while i > 0 && self.values[i - 1] > value {
+            self.values[i] = self.values[i - 1];
+            i -= 1;
+        }
+        self.values[i] = value;
+        self.count += 1;
+    }
+
+    fn consensus(&self) -> Consensus {
+        let v = &self.values[..self.count];
+        let middle = v.len() / 2;
+        let median = if v.len() % 2 == 1 { v[middle] } else { 0.5 * (v[middle] + v[middle - 1]) };
+        let quarter = v.len() / 4;
+        let size = if v.len() >= ENOUGH_FOR_THREE { 3 } else { v.len().min(2) };
+        let mut start = 0;
+        for i in 1..=v.len() - size {
+            if v[i + size - 1] - v[i] < v[start + size - 1] - v[start] {
+                start = i;
+            }
+        }
+        let (first, last) = (v[start], v[start + size - 1]);
+        let mode = if size == 3 { v[start + 1] } else { 0.5 * (first + last) };
+        Consensus { median, spread: v[v.len() - 1 - quarter] - v[quarter], mode, width: last - first }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn agree(values: &[f64]) -> Consensus {
+        let mut sorted = Sorted { values: [0.0; MAX_GUESSES], count: 0 };
+        values.iter().for_each(|&v| sorted.insert(v));
+        sorted.consensus()
+    }
+
+    #[test]
+    fn outliers_do_not_count() {
+        let c = agree(&[5.0, 5.1, -80.0, 4.9, 300.0, 9.0]);
+        assert_eq!((c.mode, c.median), (5.0, 5.05));
+        assert!((c.width - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn few_guesses_are_enough() {
+        assert_eq!(agree(&[2.0]), Consensus { median: 2.0, spread: 0.0, mode: 2.0, width: 0.0 });
+        assert_eq!(agree(&[2.0, 4.0]), Consensus { median: 3.0, spread: 2.0, mode: 3.0, width: 2.0 });
+        let many: Vec<f64> = (0..100).map(f64::from).collect();
+        assert!(agree(&many).median.is_finite());
+    }
+
+    #[test]
+    fn opposite_neighbours_and_parallelograms_meet_on_a_lattice() {
+        let ring = vec![
+            [2.0, 0.0, 0.0],
+            [1.0, 2.0, 0.0],
+            [-1.0, 2.0, 0.0],
+            [-2.0, 0.0, 0.0],
+            [-1.0, -2.0, 0.0],
+            [1.0, -2.0, 0.0],
+        ];
+        let mut tips = vec![Tip::Fine([3.0, 2.0, 0.0]); 6];
+        tips[1..].fill(Tip::None);
+        let c = consensus(&Neighbourhood { ring, tips }, [1.0, 0.0, 0.0], 0.7);
+        assert_eq!((c.mode, c.median, c.width), (0.0, 0.0, 0.0));
+    }
+}
