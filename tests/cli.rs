@@ -619,7 +619,8 @@ fn hostile_files_encode_or_fail_with_one_sentence() {
             workshop.ok("decode out.lwc -o out.obj");
             fs::remove_file(workshop.path("out.lwc")).unwrap();
         } else {
-            assert_eq!(output.status.code(), Some(3), "{name}: {stderr}");
+            // Unusable, or declared too large.
+            assert!(matches!(output.status.code(), Some(3 | 5)), "{name}: {stderr}");
             assert!(error_line(&stderr).starts_with(&format!("lwc: {name}: ")), "{name}: {stderr}");
             assert!(!workshop.path("out.lwc").exists(), "{name} leaves a file");
         }
