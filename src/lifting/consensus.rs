@@ -5,9 +5,10 @@
 //! an irregularity or a crease. Their mean is spoilt by those, their median and their mode are not.
 
 use super::neighbourhood::{Neighbourhood, Tip};
-use super::vec3::{Vec3, dot};
+use super::vec3::Direction;
 
-/// Guesses that are looked at; the rest of a large ring is left out.
+/// Guesses that are looked at; the rest of a large ring is left out (its last neighbour stands in
+/// for those beyond).
 const MAX_GUESSES: usize = 24;
 /// With at least this many guesses the mode is the closest three, else the closest two.
 const ENOUGH_FOR_THREE: usize = 5;
@@ -26,20 +27,25 @@ pub(crate) struct Consensus {
 
 /// Gathers the guesses along `direction`: `affine`, the middles of opposite neighbours (closed rings
 /// of even size), and the parallelograms over true outer vertices.
-pub(crate) fn consensus(neighbourhood: &Neighbourhood, direction: Vec3, affine: f64) -> Consensus {
+pub(crate) fn consensus(neighbourhood: &Neighbourhood, direction: Direction, affine: f64) -> Consensus {
     let mut guesses = Sorted { values: [0.0; MAX_GUESSES], count: 0 };
-    let ring = &neighbourhood.ring;
-    let degree = ring.len();
+    let degree = neighbourhood.ring.len();
+    let mut ring = [0.0; MAX_GUESSES];
+    for (place, &p) in ring.iter_mut().zip(&neighbourhood.ring) {
+        *place = direction.of(p);
+    }
     guesses.insert(affine);
-    if neighbourhood.is_closed() && degree.is_multiple_of(2) {
-        for i in 0..(degree / 2).min(MAX_GUESSES / 2) {
-            guesses.insert(0.5 * (dot(ring[i], direction) + dot(ring[i + degree / 2], direction)));
+    if degree <= MAX_GUESSES && neighbourhood.is_closed() && degree.is_multiple_of(2) {
+        let (first, second) = ring[..degree].split_at(degree / 2);
+        for (p, q) in first.iter().zip(second) {
+            guesses.insert(0.5 * (p + q));
         }
     }
     for (i, tip) in neighbourhood.tips.iter().enumerate().take(MAX_GUESSES) {
         if let Tip::Fine(tip) = *tip {
-            let (p, q) = (ring[i], ring[if i + 1 == degree { 0 } else { i + 1 }]);
-            guesses.insert(dot(p, direction) + dot(q, direction) - dot(tip, direction));
+            let after = if i + 1 == degree { 0 } else { i + 1 };
+            let (p, q) = (ring[i], ring[after.min(MAX_GUESSES - 1)]);
+            guesses.insert(p + q - direction.of(tip));
         }
     }
     guesses.consensus()
@@ -120,7 +126,7 @@ mod tests {
         ];
         let mut tips = vec![Tip::Fine([3.0, 2.0, 0.0]); 6];
         tips[1..].fill(Tip::None);
-        let c = consensus(&Neighbourhood { ring, tips }, [1.0, 0.0, 0.0], 0.7);
+        let c = consensus(&Neighbourhood { ring, tips }, Direction::Axis(0), 0.7);
         assert_eq!((c.mode, c.median, c.width), (0.0, 0.0, 0.0));
     }
 }
