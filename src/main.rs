@@ -1,2 +1,30 @@
 //! The `lwc` program.
-fn main() {}
+
+mod cli;
+
+use clap::Parser;
+use cli::args::{Args, Command};
+use cli::ui::Ui;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    let ui = Ui::new(&args.global);
+    match dispatch(&args, &ui) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => cli::exit::report(&error, &ui),
+    }
+}
+
+fn dispatch(args: &Args, ui: &Ui) -> anyhow::Result<()> {
+    if args.global.threads > 0 {
+        rayon::ThreadPoolBuilder::new().num_threads(args.global.threads as usize).build_global()?;
+    }
+    match &args.command {
+        Command::Encode(args) => cli::encode::run(args, ui),
+        Command::Decode(args) => cli::decode::run(args, ui),
+        Command::Info(args) => cli::info::run(args),
+        Command::Describe(args) => cli::describe::run(args, ui),
+        Command::Compare(args) => cli::compare::run(args, ui),
+    }
+}

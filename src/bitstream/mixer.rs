@@ -10,8 +10,8 @@ pub(crate) const LANES: usize = 8;
 /// Weight a context starts with.
 const INITIAL_WEIGHT: f32 = 0.35;
 /// Step of the weights: FAST / (1 + n / DECAY) + SLOW after n bits.
-const RATE_FAST: f32 = 0.02;
-const RATE_SLOW: f32 = 0.002;
+const RATE_FAST: f32 = 0.05;
+const RATE_SLOW: f32 = 0.008;
 const RATE_DECAY: f32 = 256.0;
 
 /// Probability of a one in one context: 22 bits of probability, 10 bits of age.

@@ -5,13 +5,6 @@ use super::tables::Tables;
 /// Experts of a mixture.
 pub(crate) const NUM_EXPERTS: usize = 3;
 
-/// Widths and weight of the two logistic densities that make an expert, relative to its scale.
-const NARROW: f64 = 0.8;
-const WIDE: f64 = 2.4;
-const NARROW_SHARE: f64 = 0.75;
-/// Mass that an expert gives to any value, however far.
-const LEAST_MASS: f64 = 1e-9;
-
 /// One guess at an integer.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Expert {
@@ -24,22 +17,24 @@ pub(crate) struct Expert {
 }
 
 impl Expert {
-    /// Mass on one integer.
-    pub(crate) fn mass_of(&self, tables: &Tables, value: i32) -> f64 {
-        let distance = (f64::from(value) - self.centre).abs();
-        let mass = |width: f64| {
-            let step = 1.0 / (width * self.scale);
-            tables.tail((distance - 0.5) * step) - tables.tail((distance + 0.5) * step)
-        };
-        NARROW_SHARE * mass(NARROW) + (1.0 - NARROW_SHARE) * mass(WIDE) + LEAST_MASS
+    /// How well the expert did, up to a factor: trust times a density with heavy flanks at the value
+    /// that came. Cheaper than the exact mass, and as good for weighing experts.
+    #[inline]
+    pub(crate) fn score(&self, value: f64) -> f64 {
+        /// Variance of the rounding to integers.
+        const ROUNDING: f64 = 1.0 / 12.0;
+        let distance = value - self.centre;
+        let variance = self.scale * self.scale;
+        let spread = variance + ROUNDING + distance * distance;
+        self.weight * self.scale * variance / (spread * spread)
     }
 }
 
 /// Sum of experts, seen from an origin in one direction.
 pub(crate) struct Mixture<'a> {
     tables: &'a Tables,
-    /// Centre, 1 / narrow width, 1 / wide width, weight.
-    parts: [[f64; 4]; NUM_EXPERTS],
+    /// Centre, 1 / scale, weight.
+    parts: [[f64; 3]; NUM_EXPERTS],
 }
 
 impl<'a> Mixture<'a> {
@@ -53,8 +48,7 @@ impl<'a> Mixture<'a> {
         let parts = std::array::from_fn(|i| {
             let e = &experts[i];
             let centre = e.centre - origin;
-            let step = 1.0 / e.scale;
-            [if mirrored { -centre } else { centre }, step * (1.0 / NARROW), step * (1.0 / WIDE), e.weight]
+            [if mirrored { -centre } else { centre }, 1.0 / e.scale, e.weight]
         });
         Self { tables, parts }
     }
@@ -66,29 +60,21 @@ impl<'a> Mixture<'a> {
 
     /// All mass.
     pub(crate) fn total(&self) -> f64 {
-        (self.parts[0][3] + self.parts[1][3]) + self.parts[2][3]
+        (self.parts[0][2] + self.parts[1][2]) + self.parts[2][2]
     }
 
     /// Mass above `x`.
     #[inline]
     pub(crate) fn above(&self, x: f64) -> f64 {
-        let part = |p: &[f64; 4]| {
-            let d = x - p[0];
-            p[3] * (NARROW_SHARE * self.tables.tail(d * p[1])
-                + (1.0 - NARROW_SHARE) * self.tables.tail(d * p[2]))
-        };
-        (part(&self.parts[0]) + part(&self.parts[1])) + part(&self.parts[2])
+        let part = |[centre, step, weight]: [f64; 3]| weight * self.tables.tail((x - centre) * step);
+        (part(self.parts[0]) + part(self.parts[1])) + part(self.parts[2])
     }
 
     /// Mass below `x`.
     #[inline]
     pub(crate) fn below(&self, x: f64) -> f64 {
-        let part = |p: &[f64; 4]| {
-            let d = p[0] - x;
-            p[3] * (NARROW_SHARE * self.tables.tail(d * p[1])
-                + (1.0 - NARROW_SHARE) * self.tables.tail(d * p[2]))
-        };
-        (part(&self.parts[0]) + part(&self.parts[1])) + part(&self.parts[2])
+        let part = |[centre, step, weight]: [f64; 3]| weight * self.tables.tail((centre - x) * step);
+        (part(self.parts[0]) + part(self.parts[1])) + part(self.parts[2])
     }
 }
 
@@ -113,7 +99,13 @@ mod tests {
             mixture.flip();
             assert!((mixture.below(-0.5) - above).abs() < 1e-12);
         }
-        let sum: f64 = (-400..400).map(|v| experts[1].mass_of(tables, v)).sum();
-        assert!((sum - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_closer_and_the_surer_expert_scores_higher() {
+        let expert = |centre, scale| Expert { centre, scale, weight: 0.5 };
+        assert!(expert(3.0, 1.0).score(3.0) > expert(5.0, 1.0).score(3.0));
+        assert!(expert(3.0, 1.0).score(3.0) > expert(3.0, 4.0).score(3.0));
+        assert!(expert(9.0, 4.0).score(3.0) > expert(9.0, 1.0).score(3.0));
     }
 }

@@ -46,7 +46,7 @@ pub(crate) struct ResidualModel {
 }
 
 impl ResidualModel {
-    const LIMIT: u32 = 400;
+    const LIMIT: u32 = 250;
 
     pub(crate) fn new() -> Self {
         let by_scale = NUM_KINDS * SCALE_BUCKETS;

@@ -14,14 +14,19 @@ const STRETCH_SIZE: usize = 4096;
 const P_MIN: u32 = 24;
 const P_MAX: u32 = 65_536 - P_MIN;
 /// The tail table covers [−TAIL_LIMIT, TAIL_LIMIT] with this many steps to a unit.
-const TAIL_LIMIT: f64 = 24.0;
-const TAIL_STEPS: usize = 64;
+const TAIL_LIMIT: f64 = 40.0;
+const TAIL_STEPS: f64 = 32.0;
+const TAIL_SIZE: usize = 2 * 40 * 32 + 2;
+/// Widths and share of the two logistic densities whose sum has this tail.
+const NARROW: f64 = 0.8;
+const WIDE: f64 = 2.4;
+const NARROW_SHARE: f64 = 0.75;
 const LOG_STEPS: usize = 1024;
 
 pub(crate) struct Tables {
     squash: Box<[u16; SQUASH_SIZE]>,
     stretch: Box<[f32; STRETCH_SIZE]>,
-    tail: Vec<f64>,
+    tail: Box<[f32; TAIL_SIZE]>,
     log2_mantissa: Vec<f64>,
     exp2_fraction: Vec<f64>,
 }
@@ -43,13 +48,15 @@ impl Tables {
             let p = (i as f64 + 0.5) / STRETCH_SIZE as f64;
             ln(p / (1.0 - p)) as f32
         };
-        let steps = TAIL_STEPS as f64;
+        let tail = |i: usize| {
+            let z = i as f64 / TAIL_STEPS - TAIL_LIMIT;
+            let logistic = |width: f64| 1.0 / (1.0 + exp(z / width));
+            (NARROW_SHARE * logistic(NARROW) + (1.0 - NARROW_SHARE) * logistic(WIDE)) as f32
+        };
         Self {
             squash: Box::new(std::array::from_fn(squash)),
             stretch: Box::new(std::array::from_fn(stretch)),
-            tail: (0..=2 * TAIL_LIMIT as usize * TAIL_STEPS + 1)
-                .map(|i| 1.0 / (1.0 + exp(i as f64 / steps - TAIL_LIMIT)))
-                .collect(),
+            tail: Box::new(std::array::from_fn(tail)),
             log2_mantissa: (0..LOG_STEPS)
                 .map(|i| ln(1.0 + (i as f64 + 0.5) / LOG_STEPS as f64) / ln(2.0))
                 .collect(),
@@ -78,12 +85,13 @@ impl Tables {
         self.stretch[((p * STRETCH_SIZE as f64) as usize).min(STRETCH_SIZE - 1)]
     }
 
-    /// Share of the logistic distribution above `z`, 1 / (1 + e^z).
+    /// Share of the unit density above `z`: a narrow logistic with a wide one below it, which gives
+    /// it the heavy flanks that residuals have.
     #[inline]
     pub(crate) fn tail(&self, z: f64) -> f64 {
-        let t = (z.clamp(-TAIL_LIMIT, TAIL_LIMIT) + TAIL_LIMIT) * TAIL_STEPS as f64;
+        let t = (z.clamp(-TAIL_LIMIT, TAIL_LIMIT) + TAIL_LIMIT) * TAIL_STEPS;
         let i = t as usize;
-        let (a, b) = (self.tail[i], self.tail[i + 1]);
+        let (a, b) = (f64::from(self.tail[i]), f64::from(self.tail[i + 1]));
         a + (b - a) * (t - i as f64)
     }
 
@@ -156,7 +164,8 @@ mod tests {
             assert!((ln(f64::from(i)) - f64::from(i).ln()).abs() < 1e-13 * 8.0);
             let p = 1.0 / (1.0 + (-x).exp());
             assert!((f64::from(tables.squash(x as f32)) / 65_536.0 - p).abs() < 1.6e-3);
-            assert!((tables.tail(x) - (1.0 - p)).abs() < 1e-5);
+            let logistic = |width: f64| 1.0 / (1.0 + (x / width).exp());
+            assert!((tables.tail(x) - 0.75 * logistic(0.8) - 0.25 * logistic(2.4)).abs() < 1e-4);
             assert!((tables.log2(f64::from(i)) - f64::from(i).log2()).abs() < 1e-3);
             assert!((tables.exp2(x) / x.exp2() - 1.0).abs() < 1e-3);
         }
@@ -173,7 +182,8 @@ mod tests {
         let mut hash = crc32fast::Hasher::new();
         t.squash.iter().for_each(|v| hash.update(&v.to_le_bytes()));
         t.stretch.iter().for_each(|v| hash.update(&v.to_bits().to_le_bytes()));
-        for table in [&t.tail, &t.log2_mantissa, &t.exp2_fraction] {
+        t.tail.iter().for_each(|v| hash.update(&v.to_bits().to_le_bytes()));
+        for table in [&t.log2_mantissa, &t.exp2_fraction] {
             table.iter().for_each(|v| hash.update(&v.to_bits().to_le_bytes()));
         }
         assert_eq!(format!("{:08x}", hash.finalize()), "c2ac44b6");

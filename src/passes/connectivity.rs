@@ -32,7 +32,7 @@ pub(crate) struct ConnectivityModels {
     open: PlainBits,
 }
 
-const LIMIT: u32 = 255;
+const LIMIT: u32 = 30;
 /// Longest patch that contexts tell apart.
 const MAX_SIZE: usize = 6;
 const GROW_SETS: usize = 2 * MAX_SIZE;

@@ -18,7 +18,7 @@ const NUM_CUES: usize = 7;
 /// Smallest length that counts in a logarithm, in grid steps.
 const FLOOR: f64 = 0.35;
 /// Typical residual over the exponential of its mean logarithm.
-const SCALE_FACTOR: f64 = 1.2;
+const SCALE_FACTOR: f64 = 0.85;
 /// Step of the scale models.
 const SCALE_RATE: f64 = 0.02;
 /// Step of the experts' weights, and the least weight.
@@ -82,6 +82,9 @@ pub(crate) struct VertexGuess<'a> {
     /// Axes in coding order.
     axes: [usize; 3],
     log_length: f64,
+    /// Logarithms of the sizes that the neighbours' residuals suggest: ring and tips, each along and
+    /// across the surface.
+    by_neighbours: [[f64; 2]; 2],
     /// Coordinates known so far, and their distance from the first expert's centre.
     position: Vec3,
     errors: Vec3,
@@ -114,10 +117,13 @@ pub(crate) struct CoordinateGuess {
 impl<'a> VertexGuess<'a> {
     pub(crate) fn new(surroundings: &'a Surroundings) -> Self {
         let outlook = surroundings.neighbourhood.outlook();
+        let tables = Tables::get();
+        let size = |roughness: f64| tables.log2(outlook.length * tables.exp2(roughness) + FLOOR);
         Self {
+            by_neighbours: [surroundings.ring_roughness.map(size), surroundings.tip_roughness.map(size)],
             surroundings,
             axes: axis_order(outlook.normal),
-            log_length: Tables::get().log2(outlook.length),
+            log_length: tables.log2(outlook.length),
             outlook,
             position: [0.0; 3],
             errors: [0.0; 3],
@@ -134,9 +140,7 @@ impl<'a> VertexGuess<'a> {
         let affine = filter.predict(&self.outlook, direction);
         let agreed = consensus(&self.surroundings.neighbourhood, direction, affine);
 
-        let length = self.outlook.length;
-        let by_ring = tables.log2(length * tables.exp2(self.surroundings.ring_roughness[across]) + FLOOR);
-        let by_tips = tables.log2(length * tables.exp2(self.surroundings.tip_roughness[across]) + FLOOR);
+        let [by_ring, by_tips] = self.by_neighbours.map(|by| by[across]);
         let lean = self.outlook.features[0][axis];
         let by_lean = tables.log2(lean.abs() + self.outlook.features[1][axis].abs() + FLOOR);
         let by_known = tables.log2(self.errors[0].abs() + self.errors[1].abs() + FLOOR);
@@ -209,7 +213,7 @@ impl<'a> VertexGuess<'a> {
             let size = tables.log2((truth - guess.experts[i].centre).abs() + FLOOR);
             models.scales[kind][i].learn(&guess.cues[i], guess.log_scales[i], size);
         }
-        let likelihood = guess.experts.map(|e| e.weight * e.mass_of(tables, value));
+        let likelihood = guess.experts.map(|e| e.score(truth));
         let total = (likelihood[0] + likelihood[1]) + likelihood[2];
         let trust = &mut models.trust[kind][guess.trust_level];
         for i in 0..NUM_EXPERTS {

@@ -12,7 +12,7 @@ use crate::bitstream::tables::Tables;
 const OFFSETS: usize = 32;
 const OFFSETS_PER_STEP: f64 = 6.0;
 const SCALES: usize = 16;
-const LIMIT: u32 = 400;
+const LIMIT: u32 = 250;
 /// Least mass within a cell: a prediction that lies far away says nothing of its halves.
 const LEAST_MASS: f64 = 1e-9;
 

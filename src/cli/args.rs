@@ -1,0 +1,264 @@
+//! What may be typed.
+
+use super::quantity;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{ArgAction, Parser, Subcommand, value_parser};
+use lwc::descriptors::{Descriptor, Window};
+use lwc::{EncodeOptions, Limits, Partition};
+use std::path::PathBuf;
+
+/// Progressive codec for triangle meshes: one small file that can be cut anywhere.
+#[derive(Debug, Parser)]
+#[command(name = "lwc", version, after_help = super::exit::HELP)]
+#[command(disable_help_subcommand = true)]
+pub struct Args {
+    #[command(flatten)]
+    pub global: Global,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "General options")]
+pub struct Global {
+    /// Threads to use, 0 to 1024; 0 is one per core.
+    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
+    #[arg(value_parser = value_parser!(u32).range(0..=1024))]
+    pub threads: u32,
+    /// No summary, no warnings, no progress bars: only errors, and what was asked for.
+    #[arg(long, global = true)]
+    pub quiet: bool,
+    /// Tells more on standard error.
+    #[arg(short, long, global = true, action = ArgAction::Count, conflicts_with = "quiet")]
+    pub verbose: u8,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Encode(Encode),
+    Decode(Decode),
+    Info(Info),
+    Describe(Describe),
+    Compare(Compare),
+}
+
+/// Encode a mesh file (.obj .ply .stl, each also as .zst).
+///
+/// The finest level is the mesh on a grid of 2^BITS cells along its longest side; every oriented
+/// triangle comes back exactly. What has to be dropped or cut is counted in warnings.
+#[derive(Debug, clap::Args)]
+pub struct Encode {
+    /// Mesh to encode.
+    #[arg(value_name = "MODEL")]
+    pub input: PathBuf,
+    /// Stream to write, `-` for standard output. Default: MODEL with the ending .lwc, beside MODEL.
+    ///
+    /// A file that exists is replaced once the new one is complete.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub scale: Scale,
+    /// Bits per coordinate, 1 to 30.
+    #[arg(short, long, value_name = "BITS", allow_negative_numbers = true)]
+    #[arg(default_value_t = EncodeOptions::default().quantization)]
+    #[arg(value_parser = value_parser!(u32).range(1..=30))]
+    pub quantization: u32,
+    /// Levels above the base mesh, 0 to 128, or `auto`: until the base mesh is small.
+    #[arg(long, value_name = "N", default_value = "auto", allow_negative_numbers = true)]
+    #[arg(value_parser = levels)]
+    pub levels: Levels,
+    /// Factor of the radius from each level to the next coarser one, 1 to 16.
+    #[arg(long, value_name = "FACTOR", default_value_t = EncodeOptions::default().growth)]
+    #[arg(allow_negative_numbers = true, value_parser = quantity::number(1.0, 16.0))]
+    pub growth: f64,
+    /// How the vertices that a level removes are chosen.
+    ///
+    /// - balanced: the descriptor says which vertices stay, the cost of coding which others go
+    /// - algorithm1: the paper's Algorithm 1 to the letter
+    #[arg(long, value_name = "NAME", verbatim_doc_comment)]
+    #[arg(default_value = EncodeOptions::default().partition.name(), value_parser = partition_parser())]
+    pub partition: Partition,
+    /// Grid steps to the mean edge of a level, 0.5 to 1e9: fewer favour short prefixes.
+    #[arg(long, value_name = "STEPS", default_value_t = EncodeOptions::default().steps_per_edge)]
+    #[arg(allow_negative_numbers = true, value_parser = quantity::number(0.5, 1e9))]
+    pub steps_per_edge: f64,
+    /// Decode the stream and compare it with the mesh before it is written.
+    #[arg(long)]
+    pub verify: bool,
+    /// Print one JSON object in place of the summary (to standard error with `-o -`).
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Descriptor and window.
+#[derive(Debug, clap::Args)]
+pub struct Scale {
+    /// Measure of saliency.
+    #[arg(short, long, value_name = "NAME", default_value_t = Descriptor::default())]
+    #[arg(value_parser = descriptor_parser())]
+    pub descriptor: Descriptor,
+    /// Topological radius of the descriptor's window, in edges, 1 to 64.
+    #[arg(long, value_name = "N", default_value_t = Window::default().rings, allow_negative_numbers = true)]
+    #[arg(value_parser = value_parser!(u32).range(1..=64))]
+    pub rings: u32,
+    /// Euclidean radius of the window, in mean edges of the mesh, above 0, at most 1e6.
+    #[arg(long, value_name = "R", default_value_t = Window::default().radius)]
+    #[arg(allow_negative_numbers = true, value_parser = quantity::number(f64::MIN_POSITIVE, 1e6))]
+    pub radius: f64,
+}
+
+impl Scale {
+    pub fn window(&self) -> Window {
+        Window { rings: self.rings, radius: self.radius }
+    }
+}
+
+/// Decode a stream, or as much of it as there is.
+///
+/// A stream that ends early gives a coarser mesh, with a note on standard error.
+#[derive(Debug, clap::Args)]
+pub struct Decode {
+    /// Stream to decode; standard input if it is `-` or missing.
+    #[arg(value_name = "FILE.lwc")]
+    pub input: Option<PathBuf>,
+    /// Mesh to write, its ending is its format (.obj .ply .stl, each also with .zst); `-` for standard
+    /// output. Default: model.level5.obj with `--level 5`, model.decoded.obj without, beside model.lwc.
+    ///
+    /// A file that exists is replaced once the new one is complete; the input is never replaced.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Stop at this level; 0 is the base mesh. Default: the finest.
+    #[arg(short, long, value_name = "K", allow_negative_numbers = true)]
+    pub level: Option<u32>,
+    /// Decode the first N bytes only, e.g. 5000 or 20K. Default: all.
+    #[arg(short, long, value_name = "N", value_parser = quantity::bytes, allow_negative_numbers = true)]
+    pub bytes: Option<u64>,
+    /// Format on standard output and of the default name. Default: obj.
+    #[arg(long, value_name = "FORMAT", value_parser = format_parser())]
+    pub format: Option<lwc::io::Format>,
+    /// Write the finest sound mesh of a damaged stream, and succeed with a warning.
+    #[arg(long)]
+    pub salvage: bool,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
+
+/// What a stream may ask for.
+#[derive(Debug, clap::Args)]
+pub struct LimitArgs {
+    /// Most memory that decoding may take, e.g. 512M.
+    #[arg(long, value_name = "BYTES", default_value = "4G", value_parser = quantity::bytes, allow_negative_numbers = true)]
+    pub max_memory: u64,
+    /// Most vertices that may be decoded, e.g. 2M.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().max_vertices)]
+    #[arg(value_parser = quantity::count, allow_negative_numbers = true)]
+    pub max_vertices: u32,
+}
+
+impl LimitArgs {
+    pub fn limits(&self) -> Limits {
+        Limits { max_memory: self.max_memory, max_vertices: self.max_vertices, ..Limits::default() }
+    }
+}
+
+/// Show levels, passes and parameters of a stream without decoding it.
+///
+/// Works on a stream that was cut, once its table of passes is there.
+#[derive(Debug, clap::Args)]
+pub struct Info {
+    /// Stream to look at; standard input if it is `-` or missing.
+    #[arg(value_name = "FILE.lwc")]
+    pub input: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Evaluate a descriptor at every vertex of a mesh.
+///
+/// Writes the header `vertex,value` and one line per vertex, in the order of the file, with all digits.
+/// Vertices without faces have the value 0.
+#[derive(Debug, clap::Args)]
+pub struct Describe {
+    /// Mesh to describe.
+    #[arg(value_name = "MESH")]
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub scale: Scale,
+    /// Table to write (.csv), `-` for standard output.
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    pub output: PathBuf,
+}
+
+/// Measure the distance between two surfaces.
+///
+/// Root mean square and maximum of the distance to the nearest point of the other, in both directions.
+/// Each file is a mesh (.obj .ply .stl, each also as .zst) or a stream (.lwc).
+#[derive(Debug, clap::Args)]
+pub struct Compare {
+    /// Reference: relative values are divided by the diagonal of its bounding box.
+    #[arg(value_name = "A")]
+    pub a: PathBuf,
+    /// What to compare with it.
+    #[arg(value_name = "B")]
+    pub b: PathBuf,
+    /// Surface samples in each direction, e.g. 500K, at most 4G. Default: two per vertex, at least
+    /// 100,000.
+    #[arg(long, value_name = "N", value_parser = quantity::count, allow_negative_numbers = true)]
+    pub samples: Option<u32>,
+    /// Print one JSON object; `db` is null if the surfaces are identical.
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
+
+/// Number of levels, `None` for `auto`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Levels(pub Option<u32>);
+
+fn levels(text: &str) -> Result<Levels, String> {
+    match text.parse() {
+        _ if text == "auto" => Ok(Levels(None)),
+        Ok(n @ 0..=128) => Ok(Levels(Some(n))),
+        _ => Err("it is neither `auto` nor a whole number from 0 to 128".into()),
+    }
+}
+
+fn descriptor_parser() -> impl TypedValueParser<Value = Descriptor> {
+    PossibleValuesParser::new(Descriptor::ALL.map(Descriptor::name))
+        .try_map(|name| name.parse::<Descriptor>())
+}
+
+fn partition_parser() -> impl TypedValueParser<Value = Partition> {
+    PossibleValuesParser::new(Partition::ALL.map(Partition::name))
+        .try_map(|name| Partition::ALL.into_iter().find(|p| p.name() == name).ok_or("unknown partition"))
+}
+
+fn format_parser() -> impl TypedValueParser<Value = lwc::io::Format> {
+    use lwc::io::Format;
+    let all = [Format::Obj, Format::Ply, Format::Stl];
+    PossibleValuesParser::new(all.map(Format::extension))
+        .try_map(move |name| all.into_iter().find(|f| f.extension() == name).ok_or("unknown format"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn options_do_not_clash() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn defaults_are_those_of_the_library() {
+        let args = Args::try_parse_from(["lwc", "encode", "x.ply"]).unwrap();
+        let Command::Encode(encode) = args.command else { panic!("not encode") };
+        assert_eq!(encode.options(), EncodeOptions::default());
+        let args = Args::try_parse_from(["lwc", "decode", "x.lwc"]).unwrap();
+        let Command::Decode(decode) = args.command else { panic!("not decode") };
+        assert_eq!(decode.limits.limits(), Limits::default());
+    }
+}

@@ -1,0 +1,71 @@
+//! `lwc compare`: how far two surfaces are apart.
+
+use super::args::Compare;
+use super::input::read_mesh_or_stream;
+use super::output::print_json;
+use super::ui::Ui;
+use anyhow::Context;
+use lwc::metrics::{CompareOptions, Comparison, Distance, compare};
+use serde_json::{Value, json};
+use std::io::{self, Write};
+
+/// Reads both, measures, reports.
+pub fn run(args: &Compare, ui: &Ui) -> anyhow::Result<()> {
+    let a = read_mesh_or_stream(&args.a, args.limits.limits(), ui)?;
+    let b = read_mesh_or_stream(&args.b, args.limits.limits(), ui)?;
+    let mut options = CompareOptions::new();
+    options.samples = args.samples.map(|samples| samples as usize);
+    let found = {
+        let _spinner = ui.spinner("measuring");
+        compare(&a, &b, &options).with_context(|| format!("{}, {}", args.a.display(), args.b.display()))?
+    };
+    if args.json {
+        print_json(io::stdout().lock(), &to_json(args, &found))?;
+    } else {
+        print(io::stdout().lock(), &found)?;
+    }
+    Ok(())
+}
+
+fn is_identical(found: &Comparison) -> bool {
+    found.max() == 0.0
+}
+
+fn print(mut out: impl Write, found: &Comparison) -> io::Result<()> {
+    writeln!(out, "         {:>14} {:>14}", "rms", "max")?;
+    let both = Distance { rms: found.rms(), max: found.max() };
+    for (name, Distance { rms, max }) in
+        [("a to b", found.forward), ("b to a", found.backward), ("larger", both)]
+    {
+        writeln!(out, "{name:<8} {rms:>14.6e} {max:>14.6e}")?;
+    }
+    if is_identical(found) {
+        writeln!(out, "diagonal {:>14.6e}, the surfaces are identical", found.diagonal)
+    } else {
+        let share = found.rms_relative();
+        writeln!(
+            out,
+            "diagonal {:>14.6e}, rms / diagonal {share:.6e}, {:.2} dB",
+            found.diagonal,
+            found.psnr_db()
+        )
+    }
+}
+
+fn to_json(args: &Compare, found: &Comparison) -> Value {
+    let distance = |d: Distance| json!({ "rms": d.rms, "max": d.max });
+    // Numbers that are not finite become null.
+    json!({
+        "a": args.a.display().to_string(),
+        "b": args.b.display().to_string(),
+        "a_to_b": distance(found.forward),
+        "b_to_a": distance(found.backward),
+        "rms": found.rms(),
+        "max": found.max(),
+        "diagonal": found.diagonal,
+        "rms_relative": found.rms_relative(),
+        "max_relative": if found.max() == 0.0 { 0.0 } else { found.max() / found.diagonal },
+        "db": found.psnr_db(),
+        "identical": is_identical(found),
+    })
+}

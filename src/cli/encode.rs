@@ -1,0 +1,186 @@
+//! `lwc encode`: a mesh file becomes a stream.
+
+use super::args::Encode;
+use super::input::read_mesh;
+use super::output::{Destination, print_json, with_ending, without_mesh_ending};
+use super::quantity::counted;
+use super::ui::Ui;
+use super::{passes, verify};
+use anyhow::Context;
+use lwc::io::MeshFile;
+use lwc::{EncodeOptions, Encoded, RepairReport};
+use serde_json::{Value, json};
+use std::io::{self, Write};
+use std::time::Instant;
+
+impl Encode {
+    /// The options of the library.
+    pub fn options(&self) -> EncodeOptions {
+        let mut options = EncodeOptions::default();
+        options.descriptor = self.scale.descriptor;
+        options.window = self.scale.window();
+        options.growth = self.growth;
+        options.quantization = self.quantization;
+        options.levels = self.levels.0;
+        options.partition = self.partition;
+        options.steps_per_edge = self.steps_per_edge;
+        options
+    }
+
+    fn destination(&self) -> Destination {
+        let beside = || with_ending(without_mesh_ending(&self.input), "lwc");
+        Destination::new(self.output.clone().unwrap_or_else(beside))
+    }
+}
+
+/// Reads, encodes, verifies, writes, reports.
+pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
+    let destination = args.destination();
+    destination.check(Some(&args.input), false)?;
+    let start = Instant::now();
+    let file = read_mesh(&args.input, ui)?;
+    let read_seconds = start.elapsed().as_secs_f64();
+
+    let name = args.input.display().to_string();
+    let start = Instant::now();
+    let encoded = encode(&file, args, ui).with_context(|| name.clone())?;
+    let encode_seconds = start.elapsed().as_secs_f64();
+    warn_about(&name, &encoded.repair, ui);
+
+    if args.verify {
+        let start = Instant::now();
+        let _spinner = ui.spinner("verifying");
+        verify::verify(&file.mesh, args.quantization, &encoded).with_context(|| name.clone())?;
+        ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
+    }
+    destination.write(|out| out.write_all(&encoded.bytes))?;
+    let report = Report { args, file: &file, encoded: &encoded, destination, read_seconds, encode_seconds };
+    report.print(ui)
+}
+
+fn encode(file: &MeshFile, args: &Encode, ui: &Ui) -> Result<Encoded, lwc::EncodeError> {
+    let bar = ui.bar("encoding");
+    let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
+    lwc::encode_with_progress(&file.mesh, &args.options(), &progress)
+}
+
+fn warn_about(name: &str, repair: &RepairReport, ui: &Ui) {
+    let RepairReport { degenerate_faces, isolated_vertices, repeated_vertices } = *repair;
+    if degenerate_faces > 0 {
+        let faces = counted(degenerate_faces, "degenerate face", "degenerate faces");
+        ui.warn(name, &format!("{faces} dropped"));
+    }
+    if isolated_vertices > 0 {
+        let vertices = counted(isolated_vertices, "vertex", "vertices");
+        ui.warn(name, &format!("{vertices} without faces dropped"));
+    }
+    if repeated_vertices > 0 {
+        let vertices = counted(repeated_vertices, "vertex", "vertices");
+        ui.warn(name, &format!("{vertices} added to cut the mesh where it is not manifold"));
+    }
+}
+
+/// What is told at the end.
+struct Report<'a> {
+    args: &'a Encode,
+    file: &'a MeshFile,
+    encoded: &'a Encoded,
+    destination: Destination,
+    read_seconds: f64,
+    encode_seconds: f64,
+}
+
+impl Report<'_> {
+    fn print(&self, ui: &Ui) -> anyhow::Result<()> {
+        let to_stdout = self.destination != Destination::Stdout;
+        let mut out: Box<dyn Write> =
+            if to_stdout { Box::new(io::stdout().lock()) } else { Box::new(io::stderr()) };
+        if self.args.json {
+            print_json(out, &self.to_json())?;
+        } else if !ui.is_quiet() && (to_stdout || ui.is_verbose()) {
+            self.print_summary(&mut out)?;
+            if ui.is_verbose() {
+                passes::print(&mut out, &self.encoded.info, self.num_bytes())?;
+            }
+            out.flush()?;
+        }
+        Ok(())
+    }
+
+    fn num_bytes(&self) -> u64 {
+        self.encoded.bytes.len() as u64
+    }
+
+    /// Bytes of the input file as it is, compressed or not.
+    fn input_bytes(&self) -> Option<u64> {
+        Some(std::fs::metadata(&self.args.input).ok()?.len()).filter(|&bytes| bytes > 0)
+    }
+
+    fn ratio(&self) -> Option<f64> {
+        Some(self.num_bytes() as f64 / self.input_bytes()? as f64)
+    }
+
+    fn print_summary(&self, out: &mut dyn Write) -> io::Result<()> {
+        let (info, bytes) = (&self.encoded.info, self.num_bytes());
+        let finest = info.passes().last();
+        let input = self.args.input.display();
+        writeln!(
+            out,
+            "{}: {}, {}, {} on the base mesh, {} bits",
+            self.destination.name(),
+            counted(finest.map_or(0, |p| p.vertices as usize), "vertex", "vertices"),
+            counted(finest.map_or(0, |p| p.faces as usize), "face", "faces"),
+            counted(info.finest_level() as usize, "level", "levels"),
+            info.precision(),
+        )?;
+        let ratio = self.ratio().map_or(String::new(), |r| format!(", {:.1} % of {input}", 100.0 * r));
+        let verified = if self.args.verify { ", verified" } else { "" };
+        writeln!(
+            out,
+            "{bytes} bytes, {:.2} bits per vertex{ratio}, {:.2} s{verified}",
+            passes::bits_per_vertex(bytes, info),
+            self.read_seconds + self.encode_seconds,
+        )
+    }
+
+    fn to_json(&self) -> Value {
+        let (args, info, mesh) = (self.args, &self.encoded.info, &self.file.mesh);
+        let (read, repair) = (&self.file.report, &self.encoded.repair);
+        let finest = info.passes().last();
+        let output = match &self.destination {
+            Destination::Stdout => None,
+            Destination::File(path) => Some(path.display().to_string()),
+        };
+        json!({
+            "input": args.input.display().to_string(),
+            "input_bytes": self.input_bytes(),
+            "input_vertices": mesh.num_vertices(),
+            "input_faces": mesh.num_triangles(),
+            "output": output,
+            "bytes": self.num_bytes(),
+            "bits_per_vertex": passes::bits_per_vertex(self.num_bytes(), info),
+            "ratio": self.ratio(),
+            "vertices": finest.map(|p| p.vertices),
+            "faces": finest.map(|p| p.faces),
+            "levels": info.finest_level(),
+            "precision": info.precision(),
+            "descriptor": args.scale.descriptor.name(),
+            "rings": args.scale.rings,
+            "radius": args.scale.radius,
+            "growth": args.growth,
+            "partition": args.partition.name(),
+            "steps_per_edge": args.steps_per_edge,
+            "read_seconds": self.read_seconds,
+            "encode_seconds": self.encode_seconds,
+            "verified": args.verify,
+            "polygons_triangulated": read.polygons_triangulated,
+            "faces_skipped": read.faces_skipped,
+            "corners_welded": read.corners_welded,
+            "ignored": read.ignored,
+            "degenerate_faces": repair.degenerate_faces,
+            "isolated_vertices": repair.isolated_vertices,
+            "repeated_vertices": repair.repeated_vertices,
+            "passes": passes::to_json(info, self.num_bytes()),
+        })
+    }
+}

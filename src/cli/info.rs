@@ -1,0 +1,130 @@
+//! `lwc info`: what a stream says of itself.
+
+use super::args::Info;
+use super::exit::Failure;
+use super::input::StreamSource;
+use super::output::print_json;
+use super::passes;
+use anyhow::Context;
+use lwc::descriptors::Descriptor;
+use lwc::{Partition, StreamInfo};
+use serde_json::{Value, json};
+use std::io::{self, BufWriter, Read, Write};
+
+/// Reads up to the table of passes, counts the bytes behind it, reports.
+pub fn run(args: &Info) -> anyhow::Result<()> {
+    let source = StreamSource::new(args.input.as_deref())?;
+    let mut reader = source.open()?;
+    let (info, present) = read(&mut *reader).with_context(|| source.name())?;
+    let mut out = BufWriter::new(io::stdout().lock());
+    if args.json {
+        print_json(out, &to_json(&info, &source.name(), present))?;
+    } else {
+        print(&mut out, &info, &source.name(), present)?;
+        out.flush()?;
+    }
+    Ok(())
+}
+
+/// What the stream says, and how many bytes of it there are.
+fn read(reader: &mut dyn Read) -> anyhow::Result<(StreamInfo, u64)> {
+    let mut head = Vec::new();
+    let mut wanted = FIRST_BYTES;
+    loop {
+        let read = reader.take(wanted).read_to_end(&mut head).map_err(Failure::Input)?;
+        if let Some(info) = StreamInfo::read(&head)? {
+            let rest = io::copy(reader, &mut io::sink()).map_err(Failure::Input)?;
+            return Ok((info, head.len() as u64 + rest));
+        }
+        if (read as u64) < wanted {
+            return Err(Failure::CutTable.into());
+        }
+        wanted = head.len() as u64;
+    }
+}
+
+/// Bytes that hold the table of most streams; twice as many are tried each time.
+const FIRST_BYTES: u64 = 1 << 14;
+
+/// Names of what chose the odd vertices, as far as the stream says.
+fn descriptor(info: &StreamInfo) -> Option<&'static str> {
+    let code = info.descriptor_code()?;
+    Some(Descriptor::ALL.into_iter().find(|d| *d as u8 == code).map_or("unknown", Descriptor::name))
+}
+
+fn partition(info: &StreamInfo) -> Option<&'static str> {
+    let code = info.partition_code()?;
+    Some(Partition::ALL.into_iter().find(|p| *p as u8 == code).map_or("unknown", Partition::name))
+}
+
+/// Side of a cell of the finest grid, model units.
+fn step(info: &StreamInfo) -> f64 {
+    info.side() / ((1_u64 << info.precision()) - 1) as f64
+}
+
+fn header_bytes(info: &StreamInfo) -> u64 {
+    info.passes().first().map_or(0, |base| base.end - base.bytes)
+}
+
+fn passes_present(info: &StreamInfo, present: u64) -> usize {
+    info.passes().iter().filter(|pass| pass.end <= present).count()
+}
+
+fn print(out: &mut dyn Write, info: &StreamInfo, name: &str, present: u64) -> io::Result<()> {
+    let (total, passes) = (info.total_bytes(), info.passes().len());
+    if present < total {
+        let here = passes_present(info, present);
+        writeln!(out, "{name}: {present} of {total} bytes, {here} of {passes} passes")?;
+    } else {
+        writeln!(
+            out,
+            "{name}: {present} bytes, {:.2} bits per vertex",
+            passes::bits_per_vertex(total, info)
+        )?;
+    }
+    if let Some(finest) = info.passes().last() {
+        let (level, vertices, faces) = (finest.level, finest.vertices, finest.faces);
+        writeln!(out, "finest      level {level}, {vertices} vertices, {faces} faces")?;
+    }
+    let [x, y, z] = info.origin();
+    let (bits, side, step) = (info.precision(), info.side(), step(info));
+    writeln!(out, "grid        {bits} bits, origin ({x}, {y}, {z}), side {side}, step {step}")?;
+    if let (Some(descriptor), Some((rings, radius, growth))) = (descriptor(info), info.window()) {
+        writeln!(
+            out,
+            "descriptor  {descriptor}, {rings} rings, radius {radius} mean edges, {growth} times that per level"
+        )?;
+    }
+    if let Some(partition) = partition(info) {
+        writeln!(out, "partition   {partition}")?;
+    }
+    writeln!(out, "header      {} bytes\n", header_bytes(info))?;
+    passes::print(out, info, present)
+}
+
+fn to_json(info: &StreamInfo, name: &str, present: u64) -> Value {
+    let finest = info.passes().last();
+    let window = info.window();
+    json!({
+        "file": name,
+        "bytes": present,
+        "total_bytes": info.total_bytes(),
+        "header_bytes": header_bytes(info),
+        "complete": present >= info.total_bytes(),
+        "passes_present": passes_present(info, present),
+        "bits_per_vertex": passes::bits_per_vertex(info.total_bytes(), info),
+        "levels": info.finest_level(),
+        "vertices": finest.map(|p| p.vertices),
+        "faces": finest.map(|p| p.faces),
+        "precision": info.precision(),
+        "origin": info.origin(),
+        "side": info.side(),
+        "step": step(info),
+        "descriptor": descriptor(info),
+        "rings": window.map(|w| w.0),
+        "radius": window.map(|w| w.1),
+        "growth": window.map(|w| w.2),
+        "partition": partition(info),
+        "passes": passes::to_json(info, present),
+    })
+}

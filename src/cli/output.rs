@@ -1,0 +1,109 @@
+//! Files that are written, or standard output in their place.
+
+use super::exit::Failure;
+use anyhow::Context;
+use std::fs;
+use std::io::{self, BufWriter, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+/// Where a result goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Destination {
+    Stdout,
+    File(PathBuf),
+}
+
+impl Destination {
+    /// `-` is standard output.
+    pub fn new(path: PathBuf) -> Self {
+        if path == Path::new("-") { Self::Stdout } else { Self::File(path) }
+    }
+
+    pub fn name(&self) -> String {
+        match self {
+            Self::Stdout => "standard output".into(),
+            Self::File(path) => path.display().to_string(),
+        }
+    }
+
+    /// What can be known before the work: the result does not replace `input`, its folder exists, and
+    /// bytes do not go to a terminal.
+    ///
+    /// # Errors
+    /// If one of these is not so.
+    pub fn check(&self, input: Option<&Path>, is_text: bool) -> anyhow::Result<()> {
+        let Self::File(path) = self else {
+            if !is_text && io::stdout().is_terminal() {
+                let what = "standard output is a terminal, and the output would not be text";
+                return Err(Failure::Usage(what.into()).into());
+            }
+            return Ok(());
+        };
+        let real = |path: &Path| fs::canonicalize(path).ok();
+        if input.and_then(real).is_some_and(|input| real(path) == Some(input)) {
+            let what = "the output would replace the input".to_owned();
+            return Err(Failure::Usage(what)).with_context(|| self.name());
+        }
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            anyhow::bail!("{}: there is no folder {}", self.name(), folder.display());
+        }
+        if path.is_dir() {
+            anyhow::bail!("{}: it is a folder", self.name());
+        }
+        Ok(())
+    }
+
+    /// Writes what `write` writes; a file appears complete or not at all.
+    ///
+    /// # Errors
+    /// Those of `write` and of the file system, with the name of the destination.
+    pub fn write<E>(&self, write: impl FnOnce(&mut dyn Write) -> Result<(), E>) -> anyhow::Result<()>
+    where
+        E: From<io::Error> + std::error::Error + Send + Sync + 'static,
+    {
+        let written = match self {
+            Self::File(path) => lwc::io::write_atomic(path, write),
+            Self::Stdout => {
+                let mut out = BufWriter::new(io::stdout().lock());
+                write(&mut out).and_then(|()| Ok(out.flush()?))
+            }
+        };
+        written.with_context(|| self.name())
+    }
+}
+
+/// `model.obj.zst` → `model`, in the same folder: a further ending may be put behind it.
+pub fn without_mesh_ending(path: &Path) -> PathBuf {
+    let is_compressed = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("zst"));
+    if is_compressed { path.with_extension("").with_extension("") } else { path.with_extension("") }
+}
+
+/// Puts `ending` behind a path, whatever dots it has.
+pub fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
+    let mut name = path.into_os_string();
+    name.push(".");
+    name.push(ending);
+    name.into()
+}
+
+/// Prints one JSON object and a line break.
+///
+/// # Errors
+/// If nobody can be told.
+pub fn print_json(mut out: impl Write, value: &serde_json::Value) -> io::Result<()> {
+    writeln!(out, "{value:#}")?;
+    out.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_their_inner_dots() {
+        for (path, expected) in [("a/b.obj.zst", "a/b.lwc"), ("v1.2.ply", "v1.2.lwc"), ("B.STL", "B.lwc")] {
+            assert_eq!(with_ending(without_mesh_ending(Path::new(path)), "lwc"), Path::new(expected));
+        }
+    }
+}

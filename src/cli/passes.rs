@@ -1,0 +1,68 @@
+//! The table of passes, as text and as JSON.
+
+use lwc::{PassKind, StreamInfo};
+use serde_json::{Value, json};
+use std::io::{self, Write};
+
+/// Bits per vertex of the finest mesh.
+pub fn bits_per_vertex(bytes: u64, info: &StreamInfo) -> f64 {
+    let vertices = info.passes().last().map_or(0, |pass| pass.vertices);
+    bytes as f64 * 8.0 / f64::from(vertices.max(1))
+}
+
+/// Share of the vertices after a split that it brought.
+fn odd_share(info: &StreamInfo, pass: usize) -> Option<f64> {
+    let passes = info.passes();
+    let before = passes.get(pass.checked_sub(1)?)?.vertices;
+    let after = passes[pass].vertices;
+    (passes[pass].kind == PassKind::Split).then(|| f64::from(after - before) / f64::from(after.max(1)))
+}
+
+/// One object per pass. `present` is how many bytes of the stream there are.
+pub fn to_json(info: &StreamInfo, present: u64) -> Value {
+    let row = |(i, pass): (usize, &lwc::PassInfo)| {
+        json!({
+            "kind": pass.kind.name(),
+            "level": pass.level,
+            "precision": pass.precision,
+            "vertices": pass.vertices,
+            "faces": pass.faces,
+            "odd_share": odd_share(info, i),
+            "bytes": pass.bytes,
+            "bits_per_vertex": bits_per_vertex(pass.bytes, info),
+            "end": pass.end,
+            "present": pass.end <= present,
+        })
+    };
+    info.passes().iter().enumerate().map(row).collect()
+}
+
+/// One line per pass.
+///
+/// # Errors
+/// If `out` fails.
+pub fn print(mut out: impl Write, info: &StreamInfo, present: u64) -> io::Result<()> {
+    writeln!(
+        out,
+        "{:>4}  {:<6} {:>5} {:>4} {:>10} {:>10} {:>6} {:>10} {:>8} {:>11} {:>7}",
+        "pass", "kind", "level", "bits", "vertices", "faces", "odd %", "bytes", "bits/v", "end", "end %"
+    )?;
+    let total = info.total_bytes().max(1) as f64;
+    for (i, pass) in info.passes().iter().enumerate() {
+        let odd = odd_share(info, i).map_or(String::new(), |share| format!("{:.1}", 100.0 * share));
+        let (end, share) = (pass.end, 100.0 * pass.end as f64 / total);
+        let missing = if end <= present { "" } else { "  missing" };
+        writeln!(
+            out,
+            "{i:>4}  {:<6} {:>5} {:>4} {:>10} {:>10} {odd:>6} {:>10} {:>8.3} {end:>11} {share:>7.1}{missing}",
+            pass.kind.name(),
+            pass.level,
+            pass.precision,
+            pass.vertices,
+            pass.faces,
+            pass.bytes,
+            bits_per_vertex(pass.bytes, info),
+        )?;
+    }
+    Ok(())
+}

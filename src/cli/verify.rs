@@ -1,0 +1,203 @@
+//! `lwc encode --verify`: the stream decodes to the mesh on the grid.
+//!
+//! Grid and comparison are written a second time here, so that encoder and decoder cannot agree on a mistake.
+
+use super::exit::Failure;
+use lwc::{Decoder, Encoded, Limits, TriMesh};
+
+/// Sizes of the pieces that the decoder gets, over and over: one byte, and lengths that divide nothing.
+const PIECES: [usize; 6] = [1, 3, 17, 997, 65_521, 7];
+
+/// Compares the triangles of the decoded stream with those of `mesh`, as multisets of oriented triples of
+/// grid cells.
+///
+/// # Errors
+/// If anything differs.
+pub fn verify(mesh: &TriMesh, precision: u32, encoded: &Encoded) -> Result<(), Failure> {
+    let decoder = decode(encoded).map_err(Failure::Verification)?;
+    compare(mesh, precision, encoded, &decoder).map_err(Failure::Verification)
+}
+
+fn decode(encoded: &Encoded) -> Result<Decoder, String> {
+    // These bytes are our own: no limits.
+    let limits = Limits { max_memory: u64::MAX, max_vertices: u32::MAX, max_levels: u32::MAX };
+    let mut decoder = Decoder::new(limits);
+    let mut rest = &encoded.bytes[..];
+    let mut passes = encoded.info.passes().iter();
+    for size in PIECES.into_iter().cycle() {
+        let (piece, after) = rest.split_at(size.min(rest.len()));
+        rest = after;
+        decoder.feed(piece).map_err(|e| e.to_string())?;
+        while let Some(update) = decoder.step().map_err(|e| e.to_string())? {
+            let pass = passes.next().ok_or("there are more passes than announced")?;
+            let mesh = decoder.mesh().ok_or("there is no mesh after a pass")?;
+            let found = (mesh.num_vertices(), mesh.num_triangles(), mesh.level(), mesh.precision());
+            let expected = (pass.vertices as usize, pass.faces as usize, pass.level, pass.precision);
+            if update.pass != *pass || found != expected {
+                let kind = pass.kind.name();
+                return Err(format!("the {kind} pass that ends at byte {} gives another mesh", pass.end));
+            }
+        }
+        if rest.is_empty() {
+            break;
+        }
+    }
+    if !decoder.is_complete() || passes.next().is_some() {
+        return Err("the stream is incomplete".into());
+    }
+    Ok(decoder)
+}
+
+fn compare(mesh: &TriMesh, precision: u32, encoded: &Encoded, decoder: &Decoder) -> Result<(), String> {
+    let expected = Quantised::new(mesh, precision);
+    let decoded = decoder.mesh().ok_or("there is no mesh")?;
+    let info = &encoded.info;
+    let same_grid = info.side() == expected.side && info.origin() == expected.origin;
+    if info.precision() != precision || decoded.precision() != precision || !same_grid {
+        return Err("the grid differs".into());
+    }
+    let num_vertices = expected.num_vertices + encoded.repair.repeated_vertices;
+    if decoded.num_vertices() != num_vertices {
+        return Err(format!("{} vertices in place of {num_vertices}", decoded.num_vertices()));
+    }
+    if decoded.num_triangles() != expected.triangles.len() {
+        let (found, wanted) = (decoded.num_triangles(), expected.triangles.len());
+        return Err(format!("{found} faces in place of {wanted}"));
+    }
+    let cells = decoded.cells();
+    let found = sorted(decoded.triangles().iter().map(|t| t.map(|v| cells[v as usize])));
+    let differing = num_missing(&expected.triangles, &found);
+    if differing > 0 {
+        return Err(format!("{differing} of {} faces are missing", found.len()));
+    }
+    Ok(())
+}
+
+type Cell = [i32; 3];
+
+/// A mesh on the grid.
+struct Quantised {
+    origin: [f64; 3],
+    side: f64,
+    /// Vertices that usable faces have.
+    num_vertices: usize,
+    /// Usable faces, see [`sorted`].
+    triangles: Vec<[Cell; 3]>,
+}
+
+impl Quantised {
+    /// g = floor((x − min)·(2^q − 1)/s + ½) per axis: min per axis and s the longest side, both over the
+    /// vertices of the faces with three different vertices.
+    fn new(mesh: &TriMesh, precision: u32) -> Self {
+        let usable = || mesh.triangles().iter().filter(|[a, b, c]| a != b && b != c && c != a);
+        let mut is_used = vec![false; mesh.num_vertices()];
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &vertex in usable().flatten() {
+            is_used[vertex as usize] = true;
+            for (axis, &x) in mesh.positions()[vertex as usize].iter().enumerate() {
+                low[axis] = low[axis].min(x);
+                high[axis] = high[axis].max(x);
+            }
+        }
+        let side = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+        let steps = ((1_u64 << precision) - 1) as f64;
+        let cell = |vertex: u32| -> Cell {
+            let position = mesh.positions()[vertex as usize];
+            std::array::from_fn(|axis| {
+                let offset = position[axis] - low[axis];
+                let scaled = offset * steps / side;
+                // Near the largest double the product overflows where the quotient does not.
+                let scaled = if scaled.is_finite() { scaled } else { offset / side * steps };
+                if side == 0.0 { 0 } else { (scaled + 0.5).floor() as i32 }
+            })
+        };
+        let triangles = sorted(usable().map(|t| t.map(cell)));
+        let num_vertices = is_used.iter().filter(|&&used| used).count();
+        Self { origin: low, side, num_vertices, triangles }
+    }
+}
+
+/// Triangles in an order that depends on nothing but the multiset of oriented triangles: each begins with
+/// the corner that makes it smallest.
+fn sorted(triangles: impl Iterator<Item = [Cell; 3]>) -> Vec<[Cell; 3]> {
+    let turned = |[a, b, c]: [Cell; 3]| [a, b, c].min([b, c, a]).min([c, a, b]);
+    let mut triangles: Vec<_> = triangles.map(turned).collect();
+    triangles.sort_unstable();
+    triangles
+}
+
+/// How many of `wanted` are not in `found`, both sorted.
+fn num_missing(wanted: &[[Cell; 3]], found: &[[Cell; 3]]) -> usize {
+    let mut found = found.iter().peekable();
+    let is_missing = |triangle: &&[Cell; 3]| {
+        while found.next_if(|f| f < triangle).is_some() {}
+        found.next_if_eq(triangle).is_none()
+    };
+    wanted.iter().filter(is_missing).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lwc::EncodeOptions;
+
+    fn bumpy_grid() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+        let n = 12_u32;
+        let height = |i: u32, j: u32| (f64::from(i) * 0.7).sin() * f64::from(j) * 0.1;
+        let positions =
+            (0..n * n).map(|v| (v / n, v % n)).map(|(i, j)| [f64::from(i), f64::from(j), height(i, j)]);
+        let quad = |v: u32| [[v, v + n, v + n + 1], [v, v + n + 1, v + 1]];
+        let inner = (0..n * n).filter(|v| v / n + 1 < n && v % n + 1 < n);
+        (positions.collect(), inner.flat_map(quad).collect())
+    }
+
+    fn mesh(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> TriMesh {
+        TriMesh::new(positions, triangles).unwrap()
+    }
+
+    fn encoded(mesh: &TriMesh) -> Encoded {
+        lwc::encode(mesh, &EncodeOptions::default()).unwrap()
+    }
+
+    #[test]
+    fn a_stream_is_its_mesh_with_unusable_things_left_out() {
+        let (mut positions, mut triangles) = bumpy_grid();
+        positions.push([1e6, 0.0, 0.0]);
+        triangles.extend([[0, 0, 144], [0, 12, 30]]);
+        let mesh = mesh(positions, triangles);
+        verify(&mesh, 12, &encoded(&mesh)).unwrap();
+    }
+
+    #[test]
+    fn a_stream_of_another_mesh_is_found_out() {
+        let (positions, triangles) = bumpy_grid();
+        let right = encoded(&mesh(positions.clone(), triangles.clone()));
+        let fails = |positions: Vec<_>, triangles: Vec<_>, precision, part: &str| {
+            let error = verify(&mesh(positions, triangles), precision, &right).unwrap_err().to_string();
+            assert!(error.contains(part), "{error}");
+        };
+        let mut moved = positions.clone();
+        moved[40][2] += 0.05;
+        fails(moved, triangles.clone(), 12, "6 of 242 faces are missing");
+        let mut shifted = positions.clone();
+        shifted.iter_mut().for_each(|p| p[0] += 1.0);
+        fails(shifted, triangles.clone(), 12, "grid");
+        fails(positions.clone(), triangles.clone(), 11, "grid");
+        let mut flipped = triangles.clone();
+        flipped[7].swap(0, 1);
+        fails(positions.clone(), flipped, 12, "1 of 242 faces are missing");
+        fails(positions, [&triangles[..], &triangles[3..4]].concat(), 12, "in place of");
+    }
+
+    #[test]
+    fn a_damaged_or_cut_stream_is_found_out() {
+        let (positions, triangles) = bumpy_grid();
+        let mesh = mesh(positions, triangles);
+        let mut cut = encoded(&mesh);
+        cut.bytes.pop();
+        assert!(verify(&mesh, 12, &cut).unwrap_err().to_string().contains("incomplete"));
+        let mut damaged = encoded(&mesh);
+        *damaged.bytes.last_mut().unwrap() ^= 1;
+        assert!(verify(&mesh, 12, &damaged).is_err());
+    }
+}

@@ -1,0 +1,629 @@
+//! The program as a user meets it: files, pipes, messages and exit codes.
+#![cfg(feature = "cli")]
+
+mod common;
+
+use assert_cmd::Command;
+use common::*;
+use lwc::descriptors::{Descriptor, Window, evaluate, mean_edge_length};
+use lwc::{TriMesh, io};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Output, Stdio};
+use tempfile::TempDir;
+
+/// A folder of meshes to play with.
+struct Workshop(TempDir);
+
+impl Workshop {
+    fn new() -> Self {
+        let workshop = Self(tempfile::tempdir().expect("a temporary folder"));
+        workshop.put("ball.ply", &noisy(sphere(3), 1, 0.01));
+        workshop
+    }
+
+    fn put(&self, name: &str, mesh: &TriMesh) {
+        io::write(self.path(name), mesh).expect("a mesh file");
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn mesh(&self, name: &str) -> TriMesh {
+        io::read(self.path(name)).expect("a mesh").mesh
+    }
+
+    /// Names of all files, sorted.
+    fn files(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.0.path()).expect("a folder");
+        let name = |entry: std::io::Result<fs::DirEntry>| {
+            entry.expect("an entry").file_name().into_string().expect("a name")
+        };
+        let mut names: Vec<String> = entries.map(name).collect();
+        names.sort();
+        names
+    }
+
+    fn run_with_input(&self, line: &str, input: impl Into<Vec<u8>>) -> Output {
+        let mut command = Command::cargo_bin("lwc").expect("the program");
+        command.current_dir(self.0.path()).args(line.split_whitespace()).write_stdin(input);
+        command.output().expect("a run")
+    }
+
+    fn run(&self, line: &str) -> Output {
+        self.run_with_input(line, [])
+    }
+
+    /// Standard output and standard error of a run that must succeed.
+    fn ok(&self, line: &str) -> (String, String) {
+        succeeded(line, self.run(line))
+    }
+
+    /// The one line of a run that must fail with `code`, without leaving or changing a file.
+    fn fails(&self, line: &str, code: i32) -> String {
+        let before = self.files();
+        let output = self.run(line);
+        assert_eq!(self.files(), before, "`{line}` leaves files");
+        failed(line, output, code)
+    }
+
+    fn json(&self, line: &str) -> Value {
+        serde_json::from_str(&self.ok(line).0).expect("JSON")
+    }
+
+    /// The bytes of the stream of `ball.ply`.
+    fn ball_stream(&self) -> Vec<u8> {
+        self.ok("encode ball.ply --quiet");
+        fs::read(self.path("ball.lwc")).expect("a stream")
+    }
+}
+
+fn text(bytes: Vec<u8>) -> String {
+    String::from_utf8(bytes).expect("text")
+}
+
+fn succeeded(line: &str, output: Output) -> (String, String) {
+    let (stdout, stderr) = (text(output.stdout), text(output.stderr));
+    assert_eq!(output.status.code(), Some(0), "`{line}`: {stderr}");
+    (stdout, stderr)
+}
+
+fn failed(line: &str, output: Output, code: i32) -> String {
+    let stderr = text(output.stderr);
+    assert_eq!(output.status.code(), Some(code), "`{line}`: {stderr}");
+    assert!(output.stdout.is_empty(), "`{line}` fails and prints");
+    stderr
+}
+
+/// The line of an error, without warnings; there must be one.
+fn error_line(stderr: &str) -> &str {
+    let is_chatter = |line: &&str| !line.starts_with("lwc: warning: ") && !line.starts_with("lwc: note: ");
+    let errors: Vec<&str> = stderr.lines().filter(is_chatter).collect();
+    assert_eq!(errors.len(), 1, "not one line: {stderr}");
+    assert!(errors[0].starts_with("lwc: ") && !stderr.contains("panicked"), "{stderr}");
+    errors[0]
+}
+
+// --- help and usage ---
+
+#[test]
+fn help_names_commands_exit_codes_defaults_and_ranges() {
+    let workshop = Workshop::new();
+    let (help, _) = workshop.ok("--help");
+    for word in ["encode", "decode", "info", "describe", "compare", "--threads", "--quiet", "Exit codes:"] {
+        assert!(help.contains(word), "{word}");
+    }
+    let (help, _) = workshop.ok("encode --help");
+    for part in ["[default: 12]", "1 to 30", "[default: harris3d]", "shape-index", "0 to 128", "algorithm1"] {
+        assert!(help.contains(part), "{part}");
+    }
+    for command in ["decode", "info", "describe", "compare"] {
+        assert!(workshop.ok(&format!("{command} -h")).0.contains("Usage: lwc"));
+    }
+    assert_eq!(workshop.ok("--version").0, concat!("lwc ", env!("CARGO_PKG_VERSION"), "\n"));
+}
+
+#[test]
+fn values_out_of_range_are_wrong_usage() {
+    let workshop = Workshop::new();
+    for options in [
+        "-q 0",
+        "-q 31",
+        "-q -3",
+        "-q x",
+        "--levels 1000",
+        "--levels -1",
+        "--levels some",
+        "--rings 0",
+        "--rings 65",
+        "--radius 0",
+        "--radius -1",
+        "--radius nan",
+        "--radius inf",
+        "--growth 0.5",
+        "--growth 17",
+        "--steps-per-edge 0",
+        "-d harris4d",
+        "--partition both",
+        "--threads 99999",
+        "--unknown",
+        "--quiet -v",
+    ] {
+        let stderr = workshop.fails(&format!("encode ball.ply {options}"), 2);
+        assert!(stderr.starts_with("error: ") && !stderr.contains("panicked"), "{stderr}");
+    }
+    for line in [
+        "",
+        "encode",
+        "explode ball.ply",
+        "decode ball.lwc --bytes -1",
+        "decode ball.lwc --max-memory lots",
+        "decode ball.lwc --max-vertices 5G",
+        "decode ball.lwc --level -1",
+        "decode x --format gltf",
+        "compare ball.ply",
+        "compare ball.ply ball.ply --samples many",
+        "describe ball.ply -d none",
+    ] {
+        workshop.fails(line, 2);
+    }
+}
+
+#[test]
+fn unknown_endings_are_named() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    fs::copy(workshop.path("ball.ply"), workshop.path("ball.gltf")).unwrap();
+    let stderr = workshop.fails("encode ball.gltf", 3);
+    assert!(error_line(&stderr).starts_with("lwc: ball.gltf: ") && stderr.contains(".obj, .ply and .stl"));
+    let stderr = workshop.fails("decode ball.lwc -o ball.glb", 2);
+    assert!(error_line(&stderr).starts_with("lwc: ball.glb: ") && stderr.contains(".obj, .ply and .stl"));
+    let stderr = workshop.fails("describe ball.ply -o ball.png", 2);
+    assert!(error_line(&stderr).contains(".csv"));
+    let stderr = workshop.fails("decode ball.lwc --format stl -o ball.obj", 2);
+    assert!(error_line(&stderr).contains("--format"));
+}
+
+#[test]
+fn inputs_are_never_replaced() {
+    let workshop = Workshop::new();
+    let stream = workshop.ball_stream();
+    let mesh = fs::read(workshop.path("ball.ply")).unwrap();
+    fs::copy(workshop.path("ball.lwc"), workshop.path("stream.ply")).unwrap();
+    for line in [
+        "encode ball.ply -o ball.ply",
+        "encode ball.ply -o ./../{}/ball.ply",
+        "decode stream.ply -o stream.ply",
+    ] {
+        let folder = workshop.0.path().file_name().unwrap().to_str().unwrap();
+        let stderr = workshop.fails(&line.replace("{}", folder), 2);
+        assert!(error_line(&stderr).contains("would replace the input"));
+    }
+    assert_eq!(fs::read(workshop.path("ball.ply")).unwrap(), mesh);
+    assert_eq!(fs::read(workshop.path("stream.ply")).unwrap(), stream);
+}
+
+// --- encode ---
+
+#[test]
+fn encode_writes_beside_the_model_and_sums_up() {
+    let workshop = Workshop::new();
+    let (stdout, stderr) = workshop.ok("encode ball.ply --verify");
+    let bytes = fs::metadata(workshop.path("ball.lwc")).unwrap().len();
+    assert!(stdout.starts_with("ball.lwc: 642 vertices, 1280 faces, "), "{stdout}");
+    assert!(stdout.contains(&format!("{bytes} bytes, ")) && stdout.contains("verified"), "{stdout}");
+    assert_eq!(stderr, "");
+
+    fs::create_dir(workshop.path("deep.er")).unwrap();
+    workshop.put("deep.er/two.dots.obj.zst", &sphere(1));
+    workshop.ok("encode deep.er/two.dots.obj.zst");
+    assert!(workshop.path("deep.er/two.dots.lwc").exists());
+    assert_eq!(workshop.ok("encode ball.ply --quiet"), Default::default());
+}
+
+#[test]
+fn every_option_reaches_the_stream() {
+    let workshop = Workshop::new();
+    let options =
+        "-d shape-index -q 10 --levels 3 --rings 2 --radius 2.5 --growth 1.25 --partition algorithm1";
+    workshop.ok(&format!("encode ball.ply -o a.lwc {options} --steps-per-edge 1000 --verify"));
+    let info = workshop.json("info a.lwc --json");
+    for (key, expected) in [
+        ("descriptor", Value::from("shape-index")),
+        ("precision", 10.into()),
+        ("levels", 3.into()),
+        ("rings", 2.into()),
+        ("radius", 2.5.into()),
+        ("growth", 1.25.into()),
+        ("partition", "algorithm1".into()),
+    ] {
+        assert_eq!(info[key], expected, "{key}");
+    }
+    workshop.ok(&format!("encode ball.ply -o b.lwc {options}"));
+    assert_ne!(fs::read(workshop.path("a.lwc")).unwrap(), fs::read(workshop.path("b.lwc")).unwrap());
+    for descriptor in Descriptor::ALL.map(Descriptor::name) {
+        workshop.ok(&format!("encode ball.ply -o b.lwc -d {descriptor} --verify"));
+        assert_eq!(workshop.json("info b.lwc --json")["descriptor"], descriptor);
+    }
+}
+
+#[test]
+fn encode_reports_as_json() {
+    let workshop = Workshop::new();
+    workshop.put("fin.obj", &non_manifold_fin());
+    let report = workshop.json("encode fin.obj --json --verify");
+    assert_eq!(report["bytes"], fs::metadata(workshop.path("fin.lwc")).unwrap().len());
+    assert_eq!((&report["input_vertices"], &report["input_faces"]), (&50.into(), &73.into()));
+    assert_eq!((&report["output"], &report["verified"]), (&"fin.lwc".into(), &true.into()));
+    assert!(report["repeated_vertices"].as_u64() > Some(0));
+    let passes = report["passes"].as_array().unwrap();
+    assert_eq!(passes.last().unwrap()["end"], report["bytes"]);
+    assert_eq!(passes.last().unwrap()["faces"], report["faces"]);
+}
+
+#[test]
+fn what_is_dropped_is_counted() {
+    let workshop = Workshop::new();
+    let model = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 9 9 9\nvt 0 0\nvn 0 0 1\n\
+                 f 1 2 3 4\nf 1 1 2\nf 1 2\nf 2 3 1\n";
+    fs::write(workshop.path("odd.obj"), model).unwrap();
+    let (_, stderr) = workshop.ok("encode odd.obj --verify");
+    for warning in [
+        "1 polygon cut into triangles",
+        "1 face of fewer than three corners left out",
+        "not kept: vt, vn",
+        "1 degenerate face dropped",
+        "1 vertex without faces dropped",
+        "3 vertices added",
+    ] {
+        assert!(stderr.contains(&format!("lwc: warning: odd.obj: {warning}")), "{warning}: {stderr}");
+    }
+    assert_eq!(workshop.ok("encode odd.obj --quiet").1, "");
+}
+
+#[test]
+fn threads_do_not_change_the_stream() {
+    let workshop = Workshop::new();
+    workshop.ok("encode ball.ply -o one.lwc --threads 1");
+    workshop.ok("encode ball.ply -o three.lwc --threads 3");
+    let stream = |name| fs::read(workshop.path(name)).unwrap();
+    assert_eq!(stream("one.lwc"), stream("three.lwc"));
+}
+
+// --- decode ---
+
+#[test]
+fn the_whole_stream_is_the_mesh_on_the_grid() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    let (stdout, stderr) = workshop.ok("decode ball.lwc");
+    assert!(stdout.starts_with("ball.decoded.obj: 642 vertices, 1280 faces, level "), "{stdout}");
+    assert_eq!(stderr, "");
+    let decoded = workshop.mesh("ball.decoded.obj");
+    assert_eq!((decoded.num_vertices(), decoded.num_triangles()), (642, 1280));
+
+    let info = workshop.json("info ball.lwc --json");
+    let step = info["step"].as_f64().unwrap();
+    for p in decoded.positions() {
+        for (axis, x) in p.iter().enumerate() {
+            let cell = (x - info["origin"][axis].as_f64().unwrap()) / step;
+            assert!((cell - cell.round()).abs() < 1e-6 && (-0.5..4095.5).contains(&cell), "{cell}");
+        }
+    }
+    let distance = workshop.json("compare ball.ply ball.lwc --json");
+    assert!(distance["max"].as_f64().unwrap() <= step);
+}
+
+#[test]
+fn every_format_can_be_written() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    for ending in ["obj", "ply", "stl", "obj.zst", "ply.zst", "stl.zst"] {
+        workshop.ok(&format!("decode ball.lwc -o out.{ending}"));
+        assert_eq!(workshop.mesh(&format!("out.{ending}")).num_triangles(), 1280);
+    }
+    workshop.ok("decode ball.lwc --format ply");
+    assert_eq!(workshop.mesh("ball.decoded.ply"), workshop.mesh("out.ply"));
+}
+
+#[test]
+fn a_level_is_a_coarser_mesh() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    let info = workshop.json("info ball.lwc --json");
+    let levels = info["levels"].as_u64().unwrap();
+    let mut vertices = 0;
+    for level in 0..=levels {
+        workshop.ok(&format!("decode ball.lwc --level {level}"));
+        let mesh = workshop.mesh(&format!("ball.level{level}.obj"));
+        assert!(mesh.num_vertices() > vertices);
+        vertices = mesh.num_vertices();
+    }
+    assert_eq!(vertices, 642);
+    let (_, stderr) = workshop.ok("decode ball.lwc --level 99");
+    assert!(stderr.contains(&format!("there is no level 99, the finest is {levels}")), "{stderr}");
+    assert_eq!(workshop.mesh("ball.level99.obj").num_vertices(), 642);
+}
+
+#[test]
+fn a_cut_stream_is_a_coarser_mesh() {
+    let workshop = Workshop::new();
+    let stream = workshop.ball_stream();
+    let info = workshop.json("info ball.lwc --json");
+    for pass in info["passes"].as_array().unwrap() {
+        // Cut just behind the pass, or by the decoder.
+        let end = pass["end"].as_u64().unwrap() as usize;
+        let cut = stream[..(end + 3).min(stream.len())].to_vec();
+        let (_, stderr) = succeeded("cut", workshop.run_with_input("decode -o cut.ply", cut));
+        workshop.ok(&format!("decode ball.lwc --bytes {end} -o bytes.ply"));
+        let mesh = workshop.mesh("cut.ply");
+        assert_eq!(mesh.num_vertices() as u64, pass["vertices"].as_u64().unwrap());
+        assert_eq!(mesh, workshop.mesh("bytes.ply"));
+        let is_whole = end == stream.len();
+        assert_eq!(stderr.is_empty(), is_whole, "{stderr}");
+        assert!(is_whole || stderr.contains(&format!("ends after level {} of", pass["level"])), "{stderr}");
+    }
+    workshop.ok("decode --quiet ball.lwc --bytes 1K");
+}
+
+#[test]
+fn a_stream_may_come_from_standard_input_and_go_to_standard_output() {
+    let workshop = Workshop::new();
+    let output = workshop.run("encode ball.ply -o -");
+    let stream = workshop.ball_stream();
+    assert_eq!((output.stdout, text(output.stderr)), (stream.clone(), String::new()));
+    let report = workshop.run("encode ball.ply -o - --json").stderr;
+    assert_eq!(serde_json::from_slice::<Value>(&report).unwrap()["bytes"], stream.len());
+
+    let (obj, stderr) = succeeded("pipe", workshop.run_with_input("decode - -o -", stream.clone()));
+    assert_eq!((obj.matches("\nf ").count(), stderr.as_str()), (1280, ""));
+    let stl = workshop.run_with_input("decode --output - --format stl", stream.clone()).stdout;
+    assert_eq!(io::read_bytes(&stl, io::Format::Stl).unwrap().mesh.num_triangles(), 1280);
+    let (info, _) = succeeded("info", workshop.run_with_input("info", stream.clone()));
+    assert!(info.starts_with("standard input: "));
+
+    let stderr = failed("no -o", workshop.run_with_input("decode", stream), 2);
+    assert!(error_line(&stderr).contains("-o FILE"));
+}
+
+#[test]
+fn damage_is_an_error_unless_salvage_is_asked_for() {
+    let workshop = Workshop::new();
+    let mut stream = workshop.ball_stream();
+    let passes = workshop.json("info ball.lwc --json")["passes"].clone();
+    let last_but_one = &passes[passes.as_array().unwrap().len() - 2];
+    *stream.last_mut().unwrap() ^= 1;
+    fs::write(workshop.path("hurt.lwc"), &stream).unwrap();
+    let stderr = workshop.fails("decode hurt.lwc", 4);
+    assert!(error_line(&stderr).starts_with("lwc: hurt.lwc: damaged stream: "), "{stderr}");
+    workshop.fails("compare ball.ply hurt.lwc", 4);
+
+    let (_, stderr) = workshop.ok("decode hurt.lwc --salvage");
+    assert!(
+        stderr.starts_with("lwc: warning: hurt.lwc: damaged stream: ") && stderr.contains("salvaged level")
+    );
+    let salvaged = workshop.mesh("hurt.decoded.obj");
+    assert_eq!(salvaged.num_vertices() as u64, last_but_one["vertices"].as_u64().unwrap());
+
+    // The header is damaged: nothing to salvage.
+    stream[12] ^= 1;
+    fs::write(workshop.path("hurt.lwc"), &stream).unwrap();
+    error_line(&workshop.fails("decode hurt.lwc --salvage --level 1", 4));
+    error_line(&workshop.fails("info hurt.lwc", 4));
+}
+
+#[test]
+fn streams_too_short_for_a_mesh_are_damaged() {
+    let workshop = Workshop::new();
+    let stream = workshop.ball_stream();
+    for length in [0, 1, 4, 20] {
+        fs::write(workshop.path("short.lwc"), &stream[..length]).unwrap();
+        let stderr = workshop.fails("decode short.lwc", 4);
+        assert!(error_line(&stderr).contains("ends before its base mesh"), "{stderr}");
+        error_line(&workshop.fails("info short.lwc", 4));
+    }
+    error_line(&workshop.fails("decode ball.lwc --bytes 0", 4));
+}
+
+#[test]
+fn limits_have_their_own_exit_code() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    let stderr = workshop.fails("decode ball.lwc --max-vertices 500", 5);
+    assert_eq!(error_line(&stderr), "lwc: ball.lwc: limit exceeded: vertices needs 642, 500 allowed");
+    error_line(&workshop.fails("decode ball.lwc --max-memory 100K", 5));
+    error_line(&workshop.fails("compare ball.ply ball.lwc --max-vertices 0.5k", 5));
+    workshop.ok("decode ball.lwc --max-vertices 1k --max-memory 16MiB");
+    workshop.ok("decode ball.lwc --max-vertices 500 --level 1");
+}
+
+// --- info ---
+
+#[test]
+fn info_shows_what_is_there_and_what_is_missing() {
+    let workshop = Workshop::new();
+    let stream = workshop.ball_stream();
+    let (table, _) = workshop.ok("info ball.lwc");
+    assert!(table.contains("descriptor  harris3d, 4 rings, radius 3 mean edges"), "{table}");
+    assert!(table.contains("12 bits, origin (") && !table.contains("missing"), "{table}");
+    let info = workshop.json("info ball.lwc --json");
+    let passes = info["passes"].as_array().unwrap();
+    assert_eq!(table.lines().skip_while(|l| !l.starts_with("pass")).count(), passes.len() + 1);
+    let sum: u64 = passes.iter().map(|p| p["bytes"].as_u64().unwrap()).sum();
+    assert_eq!(sum + info["header_bytes"].as_u64().unwrap(), stream.len() as u64);
+    assert_eq!((&info["complete"], &info["vertices"]), (&true.into(), &642.into()));
+    let odd = |p: &Value| p["odd_share"].as_f64();
+    assert!(passes.iter().all(|p| odd(p).is_some() == (p["kind"] == "split")));
+    assert!(passes.iter().filter_map(odd).all(|share| share > 0.0 && share < 0.5));
+
+    fs::write(workshop.path("cut.lwc"), &stream[..stream.len() / 2]).unwrap();
+    assert!(workshop.ok("info cut.lwc").0.contains("missing"));
+    let cut = workshop.json("info cut.lwc --json");
+    assert_eq!((&cut["complete"], &cut["total_bytes"]), (&false.into(), &stream.len().into()));
+    let present = cut["passes"].as_array().unwrap().iter().filter(|p| p["present"] == true).count();
+    assert!(cut["passes_present"] == present && (1..passes.len()).contains(&present));
+}
+
+// --- describe ---
+
+#[test]
+fn describe_lists_every_vertex_in_full() {
+    let workshop = Workshop::new();
+    let (mut positions, triangles) = noisy(sphere(2), 7, 0.02).into_parts();
+    positions.insert(0, [5.0; 3]);
+    let triangles = triangles.into_iter().map(|t| t.map(|v| v + 1)).collect();
+    let mesh = build(positions, triangles);
+    workshop.put("spare.obj", &mesh);
+    for descriptor in Descriptor::ALL {
+        let window = Window { rings: 3, radius: 2.0 };
+        let expected = evaluate(descriptor, &mesh, &window, mean_edge_length(&mesh));
+        let (table, _) = workshop.ok(&format!("describe spare.obj -d {descriptor} --rings 3 --radius 2"));
+        let mut lines = table.lines();
+        assert_eq!((lines.next(), lines.next()), (Some("vertex,value"), Some("0,0")));
+        let rows = table.lines().skip(1).map(|row| row.split_once(',').expect("two columns"));
+        let values: Vec<f64> = rows.map(|(_, value)| value.parse().expect("a number")).collect();
+        assert_eq!(values, expected);
+    }
+    workshop.ok("describe spare.obj -o out.csv");
+    assert_eq!(fs::read_to_string(workshop.path("out.csv")).unwrap(), workshop.ok("describe spare.obj").0);
+}
+
+// --- compare ---
+
+#[test]
+fn compare_takes_meshes_and_streams() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    workshop.put("moved.obj", &map_positions(sphere(3), |p| [p[0], p[1], p[2] + 0.25]));
+    workshop.put("still.obj", &sphere(3));
+    let same = workshop.json("compare ball.lwc ball.lwc --json");
+    assert_eq!((&same["identical"], &same["db"], &same["rms"]), (&true.into(), &Value::Null, &0.0.into()));
+    assert!(workshop.ok("compare ball.ply ball.ply").0.contains("identical"));
+
+    let other = workshop.json("compare still.obj moved.obj --json --samples 20K");
+    let number = |key: &str| other[key].as_f64().unwrap();
+    assert!(other["identical"] == false && number("rms") < number("max"));
+    assert!((0.2..=0.25).contains(&number("max")));
+    assert!((number("db") + 20.0 * number("rms_relative").log10()).abs() < 1e-9);
+    assert!(workshop.ok("compare still.obj moved.obj").0.contains(" dB"));
+
+    fs::write(workshop.path("empty.obj"), "").unwrap();
+    let stderr = workshop.fails("compare ball.ply empty.obj", 3);
+    assert!(error_line(&stderr).contains("the second mesh has no vertices"));
+}
+
+// --- other failures ---
+
+#[test]
+fn bad_inputs_are_named_in_one_sentence() {
+    let workshop = Workshop::new();
+    fs::write(workshop.path("bad.obj"), "v 0 0 0\nv 1 0 0\nv one 0 0\n").unwrap();
+    fs::write(workshop.path("points.obj"), "v 0 0 0\nv 1 0 0\n").unwrap();
+    fs::write(workshop.path("fake.lwc"), "ply\nformat ascii 1.0\n").unwrap();
+    fs::write(workshop.path("fake.ply.zst"), "not zstd").unwrap();
+    fs::create_dir(workshop.path("folder.lwc")).unwrap();
+    for (line, expected) in [
+        ("encode bad.obj", "lwc: bad.obj: line 3: "),
+        ("describe bad.obj", "lwc: bad.obj: line 3: "),
+        ("compare ball.ply bad.obj", "lwc: bad.obj: line 3: "),
+        ("encode points.obj", "lwc: points.obj: the mesh has no usable triangle"),
+        ("encode missing.obj", "lwc: missing.obj: "),
+        ("encode fake.ply.zst", "lwc: fake.ply.zst: cannot decompress: "),
+        ("decode missing.lwc", "lwc: missing.lwc: "),
+        ("decode folder.lwc", "lwc: folder.lwc: "),
+        ("info missing.lwc", "lwc: missing.lwc: "),
+        ("decode fake.lwc", "lwc: fake.lwc: not an lwc stream"),
+        ("info fake.lwc", "lwc: fake.lwc: not an lwc stream"),
+        ("compare ball.ply fake.lwc", "lwc: fake.lwc: not an lwc stream"),
+    ] {
+        let stderr = workshop.fails(line, 3);
+        assert!(error_line(&stderr).starts_with(expected), "`{line}`: {stderr}");
+    }
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_other_failures() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    for (line, expected) in [
+        ("encode ball.ply -o nowhere/ball.lwc", "lwc: nowhere/ball.lwc: there is no folder nowhere"),
+        ("decode ball.lwc -o nowhere/ball.obj", "lwc: nowhere/ball.obj: there is no folder nowhere"),
+        ("describe ball.ply -o nowhere/ball.csv", "lwc: nowhere/ball.csv: there is no folder nowhere"),
+        ("encode ball.ply -o .", "lwc: .: it is a folder"),
+    ] {
+        assert_eq!(error_line(&workshop.fails(line, 1)), expected);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_an_error() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    for line in ["encode ball.ply -o -", "decode ball.lwc -o -", "info ball.lwc", "describe ball.ply"] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("lwc"));
+        command.current_dir(workshop.0.path()).args(line.split(' ')).stdout(full);
+        assert_eq!(command.output().unwrap().status.code(), Some(1), "{line}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_broken_pipe_ends_quietly() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    // Far more than a pipe holds.
+    workshop.put("large.ply", &sphere(5));
+    workshop.ok("encode large.ply --quiet");
+    for line in ["describe large.ply", "decode large.lwc -o -", "decode large.lwc -o - --format ply"] {
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("lwc"));
+        command.current_dir(workshop.0.path()).args(line.split(' '));
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!((output.status.code(), text(output.stderr)), (Some(0), String::new()), "{line}");
+    }
+}
+
+// --- files of the corpus ---
+
+/// The public meshes, if they are at hand.
+fn corpus() -> Option<PathBuf> {
+    let named = std::env::var_os("LWC_CORPUS").map(PathBuf::from);
+    let found = named.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus"));
+    if found.is_dir() {
+        return Some(found);
+    }
+    eprintln!("skipped: no corpus at {}; set LWC_CORPUS", found.display());
+    None
+}
+
+#[test]
+fn hostile_files_encode_or_fail_with_one_sentence() {
+    let Some(corpus) = corpus() else { return };
+    let workshop = Workshop::new();
+    let mut encoded = 0;
+    for entry in fs::read_dir(corpus.join("bad")).unwrap() {
+        let path = entry.unwrap().path();
+        let mut command = Command::cargo_bin("lwc").unwrap();
+        command.current_dir(workshop.0.path()).arg("encode").arg(&path).args(["-o", "out.lwc", "--verify"]);
+        let output = command.timeout(std::time::Duration::from_secs(60)).output().unwrap();
+        let stderr = text(output.stderr);
+        let name = path.display();
+        assert!(!stderr.contains("panicked"), "{name}: {stderr}");
+        if output.status.code() == Some(0) {
+            encoded += 1;
+            workshop.ok("decode out.lwc -o out.obj");
+            fs::remove_file(workshop.path("out.lwc")).unwrap();
+        } else {
+            // Unusable, or declared too large.
+            assert!(matches!(output.status.code(), Some(3 | 5)), "{name}: {stderr}");
+            assert!(error_line(&stderr).starts_with(&format!("lwc: {name}: ")), "{name}: {stderr}");
+            assert!(!workshop.path("out.lwc").exists(), "{name} leaves a file");
+        }
+    }
+    assert!(encoded > 0);
+}
