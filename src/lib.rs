@@ -8,6 +8,9 @@ pub mod descriptors;
 #[cfg(feature = "encoder")]
 mod encoder;
 mod error;
+#[cfg(feature = "fuzzing")]
+#[doc(hidden)]
+pub mod fuzzing;
 #[cfg(feature = "io")]
 pub mod io;
 mod lifting;

@@ -127,6 +127,9 @@ pub(crate) fn read_passes(payload: &[u8], grid: &Grid) -> Result<Vec<Pass>, BadT
         bytes: reader.varint().ok_or_else(short)?,
     };
     let Action::Base { mut precision } = base.action else { return Err(short()) };
+    if !(1..=grid.precision).contains(&precision) {
+        return Err(BadTable("the precision of the base mesh is not that of a grid"));
+    }
     let mut vertices = base.vertices;
     let mut faces = base.faces;
     let mut passes = vec![base];
@@ -135,6 +138,9 @@ pub(crate) fn read_passes(payload: &[u8], grid: &Grid) -> Result<Vec<Pass>, BadT
         let mut pass = Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 0 };
         if head == 0 {
             precision += 1;
+            if precision > grid.precision {
+                return Err(BadTable("the passes refine beyond the grid"));
+            }
         } else {
             pass.action = Action::Split;
             pass.vertices = head;
@@ -153,11 +159,6 @@ pub(crate) fn read_passes(payload: &[u8], grid: &Grid) -> Result<Vec<Pass>, BadT
     check_density(base.vertices.max(base.faces), base.bytes)?;
     if !reader.is_empty() {
         return Err(BadTable("bytes follow the table of passes"));
-    }
-    if !(1..=grid.precision).contains(&precision)
-        || precision != grid.precision && count > 0 && precision > grid.precision
-    {
-        return Err(BadTable("the passes refine beyond the grid"));
     }
     if base.vertices < 3 || base.faces == 0 || vertices >= u32::MAX / 4 || faces >= u32::MAX / 4 {
         return Err(BadTable("the mesh is empty or too large"));
@@ -241,5 +242,10 @@ mod tests {
         let mut deep = passes.to_vec();
         deep.push(passes[2]);
         assert!(read_passes(&write_passes(&deep), &GRID).is_err(), "thirteen bits on a grid of twelve");
+        for precision in [0, 13, 32, u32::MAX - 1, u32::MAX] {
+            let mut wide = passes;
+            wide[0].action = Action::Base { precision };
+            assert!(read_passes(&write_passes(&wide), &GRID).is_err(), "a base of {precision} bits");
+        }
     }
 }

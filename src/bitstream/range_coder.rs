@@ -4,6 +4,8 @@
 /// Total of a probability: `p / 65536` is the chance of a one.
 pub(crate) const PROBABILITY_ONE: u32 = 1 << 16;
 const RENORMALISE_BELOW: u32 = 1 << 24;
+/// Zeros behind a payload that a decoder may read: encoders leave out no more.
+const MAX_MISSING_ZEROS: usize = 8;
 
 /// One side of the coder. Passes are written once over this trait: the encoder returns the bit it
 /// was given, the decoder ignores its argument and returns the bit it read.
@@ -37,6 +39,8 @@ impl RangeEncoder {
 
     /// Ends the payload with the fewest bytes that still name a number inside the final interval.
     pub(crate) fn finish(mut self) -> Vec<u8> {
+        // What a decoder reads: four bytes at first, then one where the encoder gave one.
+        let read = 4 + self.bytes.len() + self.pending + usize::from(self.cache.is_some());
         let top = self.low + u64::from(self.range) - 1;
         let value = (0..=32).rev().map(|bits| top >> bits << bits).find(|&v| v >= self.low);
         self.low = value.unwrap_or(self.low);
@@ -46,6 +50,8 @@ impl RangeEncoder {
         while self.bytes.last() == Some(&0) {
             self.bytes.pop();
         }
+        // Improbable ones may leave nothing but zeros, however many.
+        self.bytes.resize(self.bytes.len().max(read.saturating_sub(MAX_MISSING_ZEROS)), 0);
         self.bytes
     }
 
@@ -107,7 +113,7 @@ impl<'a> RangeDecoder<'a> {
     /// True when more has been read than the payload and the zeros that may follow it could hold:
     /// the payload was not made by an encoder.
     pub(crate) fn is_exhausted(&self) -> bool {
-        self.next > self.bytes.len() + 8
+        self.next > self.bytes.len() + MAX_MISSING_ZEROS
     }
 
     #[inline]
@@ -188,6 +194,21 @@ mod tests {
         let bytes = encoder.finish();
         let mut decoder = RangeDecoder::new(&bytes);
         assert!(bits.iter().all(|&bit| decoder.code(false, 3) == bit));
+    }
+
+    #[test]
+    fn a_payload_of_zeros_keeps_enough_of_them() {
+        // Ones stay at the bottom of the interval: any number of them is the number zero.
+        for count in [1, 8, 30, 63, 64, 65, 80, 1000] {
+            for p1 in [1, 17, PROBABILITY_ONE / 2, PROBABILITY_ONE - 1] {
+                let mut encoder = RangeEncoder::new();
+                (0..count).for_each(|_| assert!(encoder.code(true, p1)));
+                let bytes = encoder.finish();
+                let mut decoder = RangeDecoder::new(&bytes);
+                assert!((0..count).all(|_| decoder.code(false, p1)));
+                assert!(!decoder.is_exhausted(), "{count} ones of probability {p1}");
+            }
+        }
     }
 
     #[test]

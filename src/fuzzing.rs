@@ -1,0 +1,428 @@
+//! Bodies of the fuzz targets in `fuzz/`, shared with `tests/findings.rs`. Not part of the API.
+//!
+//! Each takes any bytes and panics if a promise of the library does not hold.
+
+use crate::bitstream::bytes::{Reader, write_varint};
+use crate::bitstream::chunk::{self, Frame, kind};
+use crate::bitstream::header::{self, Action, Grid, Pass};
+use crate::bitstream::mixture::{Expert, NUM_EXPERTS};
+use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
+use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
+use crate::descriptors::Descriptor;
+use crate::io::{self, Format};
+use crate::mesh::Surface;
+use crate::{
+    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Partition, StreamInfo, TriMesh,
+    Update, encode,
+};
+
+const SMALL: Limits = Limits { max_memory: 16 << 20, max_vertices: 100_000, max_levels: 64 };
+/// Meshes up to here are walked after every pass, larger ones after the last.
+const CHECKED_VERTICES: usize = 500;
+
+/// Any bytes are a mesh, a coarser mesh, or an error that keeps the last mesh.
+pub fn decode(data: &[u8]) {
+    let stream = stream_from(data);
+    let _ = StreamInfo::read(&stream);
+    let mut decoder = Decoder::new(SMALL);
+    if decoder.feed(&stream).is_err() {
+        return;
+    }
+    let mut good = None;
+    loop {
+        match decoder.step() {
+            Ok(Some(_)) => {
+                let Some(mesh) = decoder.mesh() else { panic!("an update without a mesh") };
+                if mesh.num_vertices() <= CHECKED_VERTICES {
+                    assert_valid(mesh);
+                }
+                good = Some(mesh.checksum());
+            }
+            Ok(None) => break,
+            Err(_) => {
+                assert_eq!(decoder.step(), Err(DecodeError::Failed));
+                assert_eq!(decoder.feed(&[0]), Err(DecodeError::Failed));
+                break;
+            }
+        }
+    }
+    assert_eq!(decoder.mesh().map(|m| m.checksum()), good);
+    if let Some(mesh) = decoder.mesh() {
+        assert_valid(mesh);
+    }
+}
+
+/// The same bytes, cut differently, give the same updates, meshes and error. The first eight bytes
+/// choose the cuts.
+pub fn split_independent(data: &[u8]) {
+    let Some((seed, data)) = data.split_first_chunk::<8>() else { return };
+    let stream = stream_from(data);
+    // Memory depends on what a caller pushes at once, so it gets no part in this.
+    let limits = Limits { max_memory: 1 << 32, ..SMALL };
+    let (mut whole, mut cut) = (Trace::new(limits), Trace::new(limits));
+    whole.push(&stream);
+    let mut random = u64::from_le_bytes(*seed) | 1;
+    let mut rest = &stream[..];
+    while !rest.is_empty() {
+        // xorshift64
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        let longest = [1, 5, 40, 1000][(random >> 60) as usize % 4];
+        let (piece, after) = rest.split_at(rest.len().min(random as usize % (longest + 1)));
+        cut.push(piece);
+        rest = after;
+    }
+    assert_eq!(whole.updates, cut.updates);
+    assert_eq!(whole.error, cut.error);
+    assert_eq!(whole.decoder.is_complete(), cut.decoder.is_complete());
+}
+
+/// What a decoder told while bytes were pushed.
+struct Trace {
+    decoder: Decoder,
+    updates: Vec<(Update, Option<u32>)>,
+    error: Option<DecodeError>,
+}
+
+impl Trace {
+    fn new(limits: Limits) -> Self {
+        Self { decoder: Decoder::new(limits), updates: Vec::new(), error: None }
+    }
+
+    fn push(&mut self, bytes: &[u8]) {
+        if self.error.is_some() {
+            return;
+        }
+        let mut step = || {
+            self.decoder.feed(bytes)?;
+            while let Some(update) = self.decoder.step()? {
+                self.updates.push((update, self.decoder.mesh().map(|m| m.checksum())));
+            }
+            Ok(())
+        };
+        self.error = step().err();
+    }
+}
+
+/// Any triangles over any points return exactly, cell by cell, through any options.
+pub fn round_trip(data: &[u8]) {
+    let mut input = Input(data);
+    let options = options_from(&mut input);
+    let Some(mesh) = mesh_from(&mut input) else { return };
+    let encoded = match encode(&mesh, &options) {
+        Ok(encoded) => encoded,
+        Err(EncodeError::NoTriangles | EncodeError::BoundingBox) => return,
+        Err(error) => panic!("{error}"),
+    };
+    let mut decoder = Decoder::new(Limits::default());
+    if let Err(error) = decoder.feed(&encoded.bytes) {
+        panic!("{error}");
+    }
+    loop {
+        match decoder.step() {
+            Ok(None) => break,
+            Err(error) => panic!("{error}"),
+            Ok(Some(_)) => {}
+        }
+        decoder.mesh().into_iter().for_each(assert_valid);
+    }
+    assert!(decoder.is_complete());
+    let Some(decoded) = decoder.mesh() else { panic!("no mesh") };
+    assert_eq!(decoded.precision(), options.quantization);
+    assert_eq!(cells_of(decoded), quantised(&mesh, options.quantization));
+}
+
+/// Any bits under any probabilities, and any residuals under any densities, return.
+pub fn range_coder(data: &[u8]) {
+    let mut input = Input(data);
+    if input.u8() % 2 == 0 {
+        let bits: Vec<(bool, u32)> = std::iter::from_fn(|| {
+            (!input.0.is_empty()).then(|| (input.u8() % 2 == 1, u32::from(input.u16()).max(1)))
+        })
+        .collect();
+        let mut encoder = RangeEncoder::new();
+        bits.iter().for_each(|&(bit, p1)| assert_eq!(encoder.code(bit, p1), bit));
+        let bytes = encoder.finish();
+        let mut decoder = RangeDecoder::new(&bytes);
+        bits.iter().for_each(|&(bit, p1)| assert_eq!(decoder.code(false, p1), bit));
+        assert!(!decoder.is_exhausted());
+    } else {
+        let cases: Vec<Case> =
+            std::iter::from_fn(|| (!input.0.is_empty()).then(|| Case::from(&mut input))).collect();
+        let (mut encoder, mut model) = (RangeEncoder::new(), ResidualModel::new());
+        for case in &cases {
+            let coded = model.code(&mut encoder, &case.expectation(), case.value);
+            assert_eq!(coded, Some(case.value));
+        }
+        let bytes = encoder.finish();
+        let (mut decoder, mut model) = (RangeDecoder::new(&bytes), ResidualModel::new());
+        for case in &cases {
+            assert_eq!(model.code(&mut decoder, &case.expectation(), 0), Some(case.value));
+        }
+        assert!(!decoder.is_exhausted());
+    }
+}
+
+/// A residual within the ranges that passes keep to.
+struct Case {
+    experts: [Expert; NUM_EXPERTS],
+    best: usize,
+    kind: usize,
+    contexts: [usize; 2],
+    sign: usize,
+    value: i32,
+}
+
+impl Case {
+    fn from(input: &mut Input) -> Self {
+        let experts = std::array::from_fn(|_| Expert {
+            centre: f64::from(input.u32() as i32 >> (input.u8() % 31) as i32) / 3.0,
+            scale: f64::from(input.u8() % 37).exp2() * 0.06,
+            weight: 0.02 + f64::from(input.u8()) / 256.0,
+        });
+        Self {
+            experts,
+            best: usize::from(input.u8()) % NUM_EXPERTS,
+            kind: usize::from(input.u8()) % NUM_KINDS,
+            contexts: [0; 2].map(|_| usize::from(input.u8()) % CALLER_CONTEXTS),
+            sign: usize::from(input.u8()) % SIGN_CONTEXTS,
+            value: (input.u32() as i32) >> (input.u8() % 31),
+        }
+    }
+
+    fn expectation(&self) -> Expectation<'_> {
+        Expectation {
+            experts: &self.experts,
+            best: self.best,
+            log_scale: self.experts[self.best].scale.log2(),
+            kind: self.kind,
+            contexts: self.contexts,
+            sign: self.sign,
+        }
+    }
+}
+
+/// Any bytes as a file of `format` are a mesh or an error; a mesh survives being written.
+pub fn read_mesh(data: &[u8], format: Format) {
+    let Ok(file) = io::read_bytes(data, format) else { return };
+    if format == Format::Stl {
+        return;
+    }
+    let mut bytes = Vec::new();
+    if io::write_to(&mut bytes, &file.mesh, format).is_ok() {
+        let again = io::read_bytes(&bytes, format).map(|f| f.mesh);
+        assert!(again.is_ok_and(|mesh| mesh == file.mesh), "a written mesh reads differently");
+    }
+}
+
+/// Panics unless the mesh is what [`LevelMesh`] promises.
+fn assert_valid(mesh: LevelMesh) {
+    let surface = Surface::from_triangles(mesh.triangles().to_vec(), mesh.num_vertices());
+    assert!(surface.is_ok(), "{:?}", surface.err());
+    let limit = 1 << mesh.precision();
+    assert!(mesh.cells().iter().flatten().all(|c| (0..limit).contains(c)), "a cell off the grid");
+}
+
+// ---- Streams from arbitrary bytes --------------------------------------------------------------
+
+/// The first byte chooses: bytes as they are, chunks with lengths and checksums repaired, or a
+/// framing made up around arbitrary payloads.
+fn stream_from(data: &[u8]) -> Vec<u8> {
+    match data.split_first() {
+        None => Vec::new(),
+        Some((mode, data)) => match mode % 3 {
+            0 => data.to_vec(),
+            1 => reframe(data),
+            _ => made_up(data),
+        },
+    }
+}
+
+/// Repairs signature, lengths, checksums, and the sizes in the table of passes.
+fn reframe(data: &[u8]) -> Vec<u8> {
+    let mut rest = data.get(chunk::SIGNATURE.len() + 1..).unwrap_or_default();
+    let mut chunks: Vec<(u8, Vec<u8>)> = Vec::new();
+    while let Some((&kind, after)) = rest.split_first() {
+        let payload = match chunk::parse(rest) {
+            Frame::Chunk { payload, size, .. } => {
+                rest = &rest[size..];
+                payload
+            }
+            Frame::Incomplete { .. } | Frame::BadLength => {
+                rest = &[];
+                after
+            }
+        };
+        chunks.push((kind, payload.to_vec()));
+    }
+    let is_pass = |k: u8| matches!(k, kind::BASE | kind::SPLIT | kind::REFINE);
+    let sizes: Vec<u32> = chunks.iter().filter(|c| is_pass(c.0)).map(|c| c.1.len() as u32).collect();
+    let mut bytes = chunk::SIGNATURE.to_vec();
+    bytes.push(chunk::VERSION);
+    for (kind, payload) in &chunks {
+        let repaired = (*kind == kind::PASSES).then(|| resize_passes(payload, &sizes)).flatten();
+        chunk::write(&mut bytes, *kind, repaired.as_ref().unwrap_or(payload));
+    }
+    bytes
+}
+
+/// The table of passes with other sizes; `None` if it makes no sense.
+fn resize_passes(payload: &[u8], sizes: &[u32]) -> Option<Vec<u8>> {
+    let mut reader = Reader::new(payload);
+    let mut table = Vec::new();
+    let count = reader.varint()?;
+    write_varint(&mut table, count);
+    for pass in 0..=count as usize {
+        let head = reader.varint()?;
+        write_varint(&mut table, head);
+        let more = if pass == 0 { 2 } else { usize::from(head > 0) };
+        for _ in 0..more {
+            write_varint(&mut table, reader.varint()?);
+        }
+        let size = reader.varint()?;
+        write_varint(&mut table, sizes.get(pass).copied().unwrap_or(size));
+    }
+    Some(table)
+}
+
+/// A well-framed stream whose counts and payloads are the input.
+fn made_up(data: &[u8]) -> Vec<u8> {
+    let mut input = Input(data);
+    let precision = 1 + u32::from(input.u8()) % header::MAX_PRECISION;
+    let base_precision = 1 + u32::from(input.u8()) % precision;
+    let grid = Grid { precision, origin: [0.0; 3], side: 1.0 };
+    let base = Pass {
+        action: Action::Base { precision: base_precision },
+        vertices: 3 + u32::from(input.u8()),
+        faces: 1 + u32::from(input.u16() % 512),
+        bytes: 0,
+    };
+    let mut passes = vec![base];
+    for _ in 0..input.u8() % 16 {
+        let vertices = u32::from(input.u8());
+        let on_boundary = u32::from(input.u8()).min(vertices);
+        let (action, faces) =
+            if vertices == 0 { (Action::Refine, 0) } else { (Action::Split, 2 * vertices - on_boundary) };
+        passes.push(Pass { action, vertices, faces, bytes: 0 });
+    }
+    let mut payloads = Vec::new();
+    for pass in &mut passes {
+        let size = usize::from(input.u8()).min(input.0.len());
+        let (payload, rest) = input.0.split_at(size);
+        input.0 = rest;
+        payloads.push(payload);
+        pass.bytes = size as u32;
+    }
+    let mut bytes = chunk::SIGNATURE.to_vec();
+    bytes.push(chunk::VERSION);
+    chunk::write(&mut bytes, kind::HEADER, &grid.write());
+    chunk::write(&mut bytes, kind::PASSES, &header::write_passes(&passes));
+    for (pass, payload) in passes.iter().zip(payloads) {
+        let kind = match pass.action {
+            Action::Base { .. } => kind::BASE,
+            Action::Split => kind::SPLIT,
+            Action::Refine => kind::REFINE,
+        };
+        chunk::write(&mut bytes, kind, payload);
+    }
+    bytes
+}
+
+// ---- Meshes from arbitrary bytes ---------------------------------------------------------------
+
+/// Bytes taken off the front; zeros when they have run out.
+struct Input<'a>(&'a [u8]);
+
+impl Input<'_> {
+    fn bytes<const N: usize>(&mut self) -> [u8; N] {
+        let mut taken = [0; N];
+        let there = self.0.len().min(N);
+        taken[..there].copy_from_slice(&self.0[..there]);
+        self.0 = &self.0[there..];
+        taken
+    }
+
+    fn u8(&mut self) -> u8 {
+        self.bytes::<1>()[0]
+    }
+
+    fn u16(&mut self) -> u16 {
+        u16::from_le_bytes(self.bytes())
+    }
+
+    fn u32(&mut self) -> u32 {
+        u32::from_le_bytes(self.bytes())
+    }
+}
+
+fn options_from(input: &mut Input) -> EncodeOptions {
+    let mut options = EncodeOptions::default();
+    options.descriptor = Descriptor::ALL[usize::from(input.u8()) % Descriptor::ALL.len()];
+    options.partition = Partition::ALL[usize::from(input.u8()) % Partition::ALL.len()];
+    options.quantization = 1 + u32::from(input.u8()) % 30;
+    options.levels = match input.u8() % 16 {
+        15 => None,
+        levels => Some(u32::from(levels)),
+    };
+    options.steps_per_edge = f64::from(1 + input.u8() % 64) * 0.5;
+    options.window.rings = 1 + u32::from(input.u8() % 4);
+    options.growth = 1.0 + f64::from(input.u8() % 8);
+    options
+}
+
+/// Few vertices, so that triangles meet; their coordinates are of one of four kinds.
+fn mesh_from(input: &mut Input) -> Option<TriMesh> {
+    let num_vertices = 1 + usize::from(input.u8() % 96);
+    let kind = input.u8() % 4;
+    let mut coordinate = || match kind {
+        0 => f64::from(input.u8() % 4),
+        1 => f64::from(input.u8() as i8),
+        2 => f64::from(f32::from_le_bytes(input.bytes())),
+        _ => f64::from_le_bytes(input.bytes()),
+    };
+    let positions: Vec<[f64; 3]> = (0..num_vertices).map(|_| std::array::from_fn(|_| coordinate())).collect();
+    let mut triangles = Vec::new();
+    while !input.0.is_empty() {
+        triangles.push(input.bytes::<3>().map(|v| u32::from(v) % num_vertices as u32));
+    }
+    TriMesh::new(positions, triangles).ok()
+}
+
+type CellTriangle = [[i32; 3]; 3];
+
+/// Oriented triangles in grid cells, each from its smallest corner on, sorted.
+fn canonical(triangles: impl Iterator<Item = CellTriangle>) -> Vec<CellTriangle> {
+    let rotated =
+        |[a, b, c]: CellTriangle| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a; 3]);
+    let mut triangles: Vec<CellTriangle> = triangles.map(rotated).collect();
+    triangles.sort_unstable();
+    triangles
+}
+
+fn cells_of(mesh: LevelMesh) -> Vec<CellTriangle> {
+    canonical(mesh.triangles().iter().map(|t| t.map(|v| mesh.cells()[v as usize])))
+}
+
+/// The usable triangles of `mesh` on the grid that the vertices they use span.
+fn quantised(mesh: &TriMesh, precision: u32) -> Vec<CellTriangle> {
+    let usable = || mesh.triangles().iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+    let at = |v: u32| mesh.positions()[v as usize];
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for p in usable().flatten().map(|&v| at(v)) {
+        low = std::array::from_fn(|a| low[a].min(p[a]));
+        high = std::array::from_fn(|a| high[a].max(p[a]));
+    }
+    let side = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
+    let steps = f64::from((1_u32 << precision) - 1);
+    let cell = |v: u32| {
+        std::array::from_fn(|a| {
+            let offset = at(v)[a] - low[a];
+            let product = offset * steps;
+            // Only the largest doubles overflow.
+            let scaled = if product.is_finite() { product / side } else { offset / side * steps };
+            if side > 0.0 { (scaled + 0.5).floor() as i32 } else { 0 }
+        })
+    };
+    canonical(usable().map(|t| t.map(cell)))
+}
