@@ -1,6 +1,12 @@
 //! Procedural meshes for the tests. All are counter-clockwise seen from outside or above.
 #![allow(dead_code)]
 
+pub mod chunks;
+#[cfg(feature = "encoder")]
+pub mod exact;
+pub mod kinds;
+pub mod valid;
+
 use std::collections::HashMap;
 
 use lwc::TriMesh;

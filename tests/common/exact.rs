@@ -1,0 +1,112 @@
+//! What an exact round trip is: the oriented triangles of the input, on the grid of
+//! `format/SPEC.md`, computed here without the codec.
+#![allow(dead_code)]
+
+use lwc::{
+    DecodeOptions, Decoder, EncodeOptions, Encoded, LevelMesh, Limits, RepairReport, TriMesh, decode, encode,
+};
+
+/// A triangle by the grid cells of its corners.
+pub type CellTriangle = [[i64; 3]; 3];
+
+/// The usable part of a mesh on a grid.
+pub struct Quantised {
+    /// Oriented triangles, each from its smallest corner on, sorted.
+    pub triangles: Vec<CellTriangle>,
+    /// Vertices that they use.
+    pub used_vertices: usize,
+    /// Triangles left out because they name a vertex twice.
+    pub degenerate_faces: usize,
+}
+
+/// g = floor((x − min)·(2^q − 1)/s + ½), min per axis and s the largest side, both over the vertices
+/// that usable triangles use.
+pub fn quantise(mesh: &TriMesh, precision: u32) -> Quantised {
+    let usable: Vec<[u32; 3]> =
+        mesh.triangles().iter().copied().filter(|&[a, b, c]| a != b && b != c && c != a).collect();
+    let mut used: Vec<u32> = usable.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+
+    // A power of two scales exactly; it keeps the products of huge coordinates finite.
+    let largest =
+        used.iter().flat_map(|&v| mesh.positions()[v as usize]).fold(0.0, |m: f64, c| m.max(c.abs()));
+    let unit = if largest > 1e290 { 2f64.powi(-64) } else { 1.0 };
+    let at = |v: u32| mesh.positions()[v as usize].map(|c| c * unit);
+    let low: [f64; 3] =
+        std::array::from_fn(|axis| used.iter().map(|&v| at(v)[axis]).fold(f64::INFINITY, f64::min));
+    let high: [f64; 3] =
+        std::array::from_fn(|axis| used.iter().map(|&v| at(v)[axis]).fold(f64::NEG_INFINITY, f64::max));
+    let side = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+    let steps = (2f64.powi(precision as i32)) - 1.0;
+    let cell = |v: u32| -> [i64; 3] {
+        std::array::from_fn(|axis| match side {
+            0.0 => 0,
+            _ => ((at(v)[axis] - low[axis]) * steps / side + 0.5).floor() as i64,
+        })
+    };
+    Quantised {
+        triangles: canonical(usable.iter().map(|t| t.map(cell))),
+        used_vertices: used.len(),
+        degenerate_faces: mesh.num_triangles() - usable.len(),
+    }
+}
+
+/// The triangles of a decoded mesh in the same form.
+pub fn cell_triangles(mesh: LevelMesh) -> Vec<CellTriangle> {
+    let cell = |v: u32| mesh.cells()[v as usize].map(i64::from);
+    canonical(mesh.triangles().iter().map(|t| t.map(cell)))
+}
+
+/// Turns each triangle to its smallest corner, keeping the orientation, and sorts.
+pub fn canonical(triangles: impl Iterator<Item = CellTriangle>) -> Vec<CellTriangle> {
+    let mut triangles: Vec<CellTriangle> = triangles
+        .map(|[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().expect("three rotations"))
+        .collect();
+    triangles.sort_unstable();
+    triangles
+}
+
+/// Encodes, decodes and compares.
+#[track_caller]
+pub fn assert_round_trip(mesh: &TriMesh, options: &EncodeOptions, what: &str) -> Encoded {
+    let encoded = match encode(mesh, options) {
+        Ok(encoded) => encoded,
+        Err(error) => panic!("{what}: {error}"),
+    };
+    assert_exact(mesh, options.quantization, &encoded.bytes, &encoded.repair, what);
+    encoded
+}
+
+/// The finest mesh of the stream holds every usable triangle of `mesh`, and nothing else.
+#[track_caller]
+pub fn assert_exact(mesh: &TriMesh, precision: u32, stream: &[u8], report: &RepairReport, what: &str) {
+    let wanted = quantise(mesh, precision);
+    let mut decoder = Decoder::new(Limits::default());
+    if let Err(error) = decoder.push(stream) {
+        panic!("{what}: {error}");
+    }
+    assert!(decoder.is_complete(), "{what}: passes are missing");
+    let decoded = decoder.mesh().expect("a complete stream has a mesh");
+    assert_eq!(decoded.precision(), precision, "{what}");
+    assert_eq!(report.degenerate_faces, wanted.degenerate_faces, "{what}");
+    assert_eq!(report.isolated_vertices, mesh.num_vertices() - wanted.used_vertices, "{what}");
+    assert_eq!(decoded.num_vertices(), wanted.used_vertices + report.repeated_vertices, "{what}");
+    assert_eq!(decoded.num_triangles(), wanted.triangles.len(), "{what}");
+    assert!(cell_triangles(decoded) == wanted.triangles, "{what}: other triangles");
+
+    // Positions in model units are those of the cells, in the view and in the one-shot result.
+    let info = decoder.info().expect("a complete stream has a table");
+    let steps = 2f64.powi(precision as i32) - 1.0;
+    let magnitude = info.origin().iter().fold(info.side(), |m, o| m.max(o.abs()));
+    for (position, cell) in decoded.positions().zip(decoded.cells()) {
+        for axis in 0..3 {
+            let wanted = info.origin()[axis] + f64::from(cell[axis]) / steps * info.side();
+            // A handful of roundings of numbers up to `magnitude`, or of the smallest numbers.
+            let tolerance = magnitude * 1e-15 + 1e-322;
+            assert!((position[axis] - wanted).abs() <= tolerance, "{what}: {position:?} off the grid");
+        }
+    }
+    let one_shot = decode(stream, DecodeOptions::new()).expect("decoded a moment ago");
+    assert_eq!(one_shot, decoded.to_tri_mesh(), "{what}");
+}

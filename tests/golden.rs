@@ -1,0 +1,231 @@
+//! Streams that every version must decode to the same bits: `format/golden/*.lwc`, with the mesh after
+//! each pass in `format/golden/checksums.txt`.
+//!
+//! Once the format is frozen a changed checksum is a broken promise. Until then, or for new streams:
+//!
+//! ```text
+//! LWC_UPDATE_GOLDEN=1 cargo test --test golden
+//! ```
+
+mod common;
+
+use common::chunks;
+use common::valid::assert_valid;
+use lwc::{Decoder, Limits, PassKind, StreamInfo};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("format/golden")
+}
+
+/// Names and bytes, sorted by name; made anew first if that is wanted.
+fn streams() -> Vec<(String, Vec<u8>)> {
+    #[cfg(feature = "encoder")]
+    make::update_if_wanted();
+    let mut streams: Vec<(String, Vec<u8>)> = std::fs::read_dir(folder())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|ending| ending == "lwc"))
+        .map(|path| {
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            (name, std::fs::read(&path).unwrap())
+        })
+        .collect();
+    streams.sort();
+    assert!(streams.len() >= 10, "only {} golden streams", streams.len());
+    streams
+}
+
+const HEADING: &str =
+    "# file, pass, kind, level, precision, vertices, faces, checksum of the mesh after the pass\n";
+
+/// The lines of `checksums.txt` for one stream.
+fn lines_of(name: &str, stream: &[u8]) -> String {
+    let mut decoder = Decoder::new(Limits::default());
+    decoder.feed(stream).unwrap();
+    let (mut lines, mut pass) = (String::new(), 0);
+    while let Some(update) = decoder.step().unwrap_or_else(|error| panic!("{name}: {error}")) {
+        let mesh = decoder.mesh().unwrap();
+        assert_valid(mesh, name);
+        let kind = update.pass.kind.name();
+        let (level, precision) = (mesh.level(), mesh.precision());
+        let (vertices, faces) = (mesh.num_vertices(), mesh.num_triangles());
+        let checksum = mesh.checksum();
+        writeln!(lines, "{name} {pass} {kind} {level} {precision} {vertices} {faces} {checksum:08x}")
+            .unwrap();
+        pass += 1;
+    }
+    assert!(decoder.is_complete(), "{name} is not complete");
+    lines
+}
+
+#[test]
+fn every_golden_stream_decodes_to_its_checksums() {
+    let streams = streams();
+    let recorded = std::fs::read_to_string(folder().join("checksums.txt")).unwrap();
+    let mut found = HEADING.to_owned();
+    for (name, stream) in &streams {
+        found += &lines_of(name, stream);
+    }
+    for (found, recorded) in found.lines().zip(recorded.lines()) {
+        assert_eq!(found, recorded);
+    }
+    assert_eq!(found.lines().count(), recorded.lines().count());
+}
+
+#[test]
+fn the_golden_streams_are_small() {
+    for (name, stream) in streams() {
+        assert!(stream.len() < 3000, "{name}: {} bytes", stream.len());
+    }
+}
+
+/// Each part of the syntax occurs in some stream.
+#[test]
+fn the_golden_streams_cover_the_syntax() {
+    let mut seen: BTreeMap<&str, bool> = BTreeMap::new();
+    for (_, stream) in streams() {
+        let chunks = chunks::split(&stream);
+        let info = StreamInfo::read(&stream).unwrap().unwrap();
+        let payload = |kind| &chunks.iter().find(|c| c.kind == kind).unwrap().payload;
+        let rows = chunks::read_table(payload(b'L'));
+        let kinds: Vec<PassKind> = info.passes().iter().map(|p| p.kind).collect();
+        let is_padded = |i: usize, row: &chunks::Row| {
+            let touched = if row.head == [0] { info.passes()[i].vertices } else { row.head[0] };
+            i > 0 && row.size > 0 && row.size == touched.div_ceil(64) - 1
+        };
+        let last_split = kinds.iter().rposition(|&k| k == PassKind::Split);
+        for (feature, is_there) in [
+            ("narrow header", payload(b'H')[0] == 0),
+            ("wide header", payload(b'H')[0] == 1),
+            ("30 bits", info.precision() == 30),
+            ("no provenance", info.descriptor_code().is_none()),
+            ("balanced", info.partition_code() == Some(0)),
+            ("algorithm1", info.partition_code() == Some(1)),
+            ("base only", kinds == [PassKind::Base]),
+            ("boundary vertices", rows.iter().skip(1).any(|r| r.head.len() == 2 && r.head[1] > 0)),
+            ("all inside", rows.iter().skip(1).any(|r| r.head.len() == 2 && r.head[1] == 0)),
+            (
+                "refinement before a split",
+                last_split.is_some_and(|last| kinds[..last].contains(&PassKind::Refine)),
+            ),
+            ("refinement last", kinds.last() == Some(&PassKind::Refine)),
+            ("padding", rows.iter().enumerate().any(|(i, row)| is_padded(i, row))),
+            ("unknown chunk", chunks.iter().any(|c| !b"HpLBSR".contains(&c.kind))),
+        ] {
+            *seen.entry(feature).or_default() |= is_there;
+        }
+    }
+    let missing: Vec<&str> =
+        seen.into_iter().filter(|&(_, is_there)| !is_there).map(|(name, _)| name).collect();
+    assert!(missing.is_empty(), "no golden stream has: {missing:?}");
+}
+
+#[cfg(feature = "encoder")]
+mod make {
+    use super::common::chunks::{self, Chunk};
+    use super::common::kinds::beside;
+    use super::common::*;
+    use lwc::descriptors::Descriptor;
+    use lwc::{EncodeOptions, Partition, TriMesh, encode};
+    use std::sync::Once;
+
+    /// Writes all streams and their checksums, once, if `LWC_UPDATE_GOLDEN` is set.
+    pub fn update_if_wanted() {
+        static ONCE: Once = Once::new();
+        ONCE.call_once(|| {
+            if std::env::var_os("LWC_UPDATE_GOLDEN").is_some() {
+                update();
+            }
+        });
+    }
+
+    fn update() {
+        std::fs::create_dir_all(super::folder()).unwrap();
+        let mut streams = all();
+        streams.sort();
+        let mut checksums = super::HEADING.to_owned();
+        for (name, stream) in streams {
+            let name = format!("{name}.lwc");
+            std::fs::write(super::folder().join(&name), &stream).unwrap();
+            checksums += &super::lines_of(&name, &stream);
+        }
+        std::fs::write(super::folder().join("checksums.txt"), checksums).unwrap();
+    }
+
+    fn stream(mesh: &TriMesh, change: impl Fn(&mut EncodeOptions)) -> Vec<u8> {
+        let mut options = EncodeOptions::default();
+        change(&mut options);
+        encode(mesh, &options).unwrap().bytes
+    }
+
+    fn all() -> Vec<(&'static str, Vec<u8>)> {
+        let bumpy = |x: f64, y: f64| 0.6 * (0.7 * x).sin() * (0.5 * y).cos();
+        let default = |_: &mut EncodeOptions| {};
+        let torus = noisy(torus(20, 9), 1, 0.02);
+        let commented = {
+            let mut chunks = chunks::split(&stream(&noisy(sphere(2), 9, 0.02), default));
+            chunks.insert(1, Chunk::new(b'c', b"a chunk that decoders skip"));
+            chunks.insert(4, Chunk::new(b'c', b""));
+            chunks.push(Chunk::new(b'z', &[0xff; 9]));
+            chunks::join(&chunks)
+        };
+        vec![
+            ("single-triangle", stream(&single_triangle(), default)),
+            ("tetrahedron", stream(&tetrahedron(), default)),
+            ("torus", stream(&torus, default)),
+            ("open-grid", stream(&noisy(grid(16, 13, bumpy), 2, 0.05), default)),
+            ("strip-with-ears", {
+                stream(&noisy(strip(120), 3, 0.02), |o| o.partition = Partition::Algorithm1)
+            }),
+            ("non-manifold", stream(&noisy(non_manifold_fin(), 4, 0.02), default)),
+            ("soup", stream(&soup(30, 60, 5), |o| o.quantization = 9)),
+            (
+                "components",
+                stream(&beside(sphere(1), beside(grid(5, 5, bumpy), tetrahedron())), |o| {
+                    o.levels = Some(3);
+                }),
+            ),
+            ("genus-3", stream(&genus3(), |o| o.quantization = 8)),
+            ("utm-30-bits", {
+                let shift = |p: [f64; 3]| [431_234.567 + p[0], 5_512_345.678 + p[1], 812.001 + p[2]];
+                stream(&map_positions(noisy(grid(9, 8, bumpy), 6, 0.1), shift), |o| o.quantization = 30)
+            }),
+            ("one-bit", stream(&noisy(sphere(2), 7, 0.02), |o| o.quantization = 1)),
+            ("late-precision", stream(&torus, |o| o.steps_per_edge = 3.0)),
+            ("precision-at-once", stream(&torus, |o| o.steps_per_edge = 1e9)),
+            ("algorithm1", {
+                stream(&noisy(sphere(2), 8, 0.02), |o| {
+                    o.partition = Partition::Algorithm1;
+                    o.descriptor = Descriptor::Nfv;
+                    o.window.rings = 2;
+                    o.growth = 2.0;
+                })
+            }),
+            (
+                "flat-grid",
+                stream(&flat_grid(), |o| {
+                    o.quantization = 10;
+                    o.steps_per_edge = 1.0;
+                }),
+            ),
+            ("unknown-chunks", commented),
+        ]
+    }
+
+    /// A flat grid whose vertices have zeros in all low bits, so that refinements cost nearly nothing
+    /// and need padding.
+    fn flat_grid() -> TriMesh {
+        let size = 32;
+        let flat = grid(size, size, |_, _| 0.0);
+        let on_cells = map_positions(flat, |p| [32.0 * (p[0] + 15.5), 32.0 * (p[1] + 15.5), 0.0]);
+        // The corner of the box makes a step of the grid a unit.
+        beside_at(on_cells, single_triangle(), 1022.0)
+    }
+
+    fn beside_at(one: TriMesh, other: TriMesh, x: f64) -> TriMesh {
+        beside(one, map_positions(other, |p| [p[0] + x - 7.0, p[1], p[2]]))
+    }
+}

@@ -1,0 +1,167 @@
+//! How much memory encoder and decoder take, and that no stream can make a decoder take much.
+#![cfg(feature = "encoder")]
+
+mod common;
+
+use common::chunks::{self, Chunk, Row};
+use common::*;
+use lwc::{DecodeError, Decoder, EncodeOptions, Limits, TriMesh, encode};
+use peak_alloc::PeakAlloc;
+use std::sync::{Mutex, MutexGuard};
+
+#[global_allocator]
+static HEAP: PeakAlloc = PeakAlloc;
+
+/// The heap is one for all tests: they take turns.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// Result of `f`, and the most bytes it held at once beyond those that were there before.
+fn peak<T>(f: impl FnOnce() -> T) -> (T, usize) {
+    let before = HEAP.current_usage();
+    HEAP.reset_peak_usage();
+    let result = f();
+    (result, HEAP.peak_usage().saturating_sub(before))
+}
+
+/// Tables that are made once, and threads.
+fn warm_up() {
+    let stream = encode(&sphere(2), &EncodeOptions::default()).unwrap().bytes;
+    Decoder::new(Limits::default()).push(&stream).unwrap();
+}
+
+fn large_meshes() -> [(&'static str, TriMesh); 2] {
+    let bumpy = |x: f64, y: f64| 9.0 * (0.05 * x).sin() * (0.03 * y).cos();
+    [("sphere", noisy(sphere(7), 1, 0.001)), ("grid", noisy(grid(320, 320, bumpy), 2, 0.2))]
+}
+
+#[test]
+fn encoder_and_decoder_stay_within_their_bytes_per_vertex() {
+    let _turn = turn();
+    warm_up();
+    for (name, mesh) in large_meshes() {
+        let vertices = mesh.num_vertices();
+        assert!(vertices > 100_000);
+        let (stream, encoding) = peak(|| encode(&mesh, &EncodeOptions::default()).unwrap().bytes);
+        let mut decoder = Decoder::new(Limits::default());
+        let ((), decoding) = peak(|| {
+            // As a network would bring it.
+            stream.chunks(1 << 14).for_each(|bytes| drop(decoder.push(bytes).unwrap()));
+        });
+        assert!(decoder.is_complete());
+        let per_vertex = |bytes: usize| bytes as f64 / vertices as f64;
+        println!(
+            "{name}: {vertices} vertices, encoder {:.0} and decoder {:.0} bytes per vertex",
+            per_vertex(encoding),
+            per_vertex(decoding)
+        );
+        assert!(per_vertex(encoding) <= 700.0, "{name}: encoder {:.0}", per_vertex(encoding));
+        assert!(per_vertex(decoding) <= 250.0, "{name}: decoder {:.0}", per_vertex(decoding));
+    }
+}
+
+#[test]
+fn what_limits_allow_is_an_upper_bound() {
+    let _turn = turn();
+    warm_up();
+    for (name, mesh) in large_meshes() {
+        let stream = encode(&mesh, &EncodeOptions::default()).unwrap().bytes;
+        // Whatever memory is allowed, the decoder holds no more, and says so when it stops.
+        for max_memory in [1 << 20, 4 << 20, 8 << 20, 16 << 20, 24 << 20] {
+            let limits = Limits { max_memory, ..Limits::default() };
+            let mut decoder = Decoder::new(limits);
+            let (error, held) = peak(|| stream.chunks(1 << 12).find_map(|bytes| decoder.push(bytes).err()));
+            assert!(held as u64 <= max_memory, "{name}: {held} bytes of {max_memory}");
+            match error {
+                Some(DecodeError::Limit { what: "memory", needed, allowed }) => {
+                    assert!(needed > allowed && allowed == max_memory, "{name}: {needed} of {allowed}");
+                }
+                None => assert!(decoder.is_complete(), "{name}"),
+                Some(error) => panic!("{name}: {error}"),
+            }
+        }
+    }
+}
+
+/// A header, a table of `rows`, and then `chunks`.
+fn claim(rows: &[Row], chunks: &[Chunk]) -> Vec<u8> {
+    let table = Chunk { kind: b'L', payload: chunks::write_table(rows) };
+    chunks::join(&[&[chunks::header(12), table], chunks].concat())
+}
+
+fn row(head: &[u32], size: u32) -> Row {
+    Row { head: head.to_vec(), size }
+}
+
+#[test]
+fn streams_that_claim_much_in_few_bytes_get_nothing() {
+    let _turn = turn();
+    warm_up();
+    let triangle = || Chunk::new(b'B', &[0x12; 9]);
+    let billion = 1 << 30;
+    let mut many_passes = vec![row(&[12, 3, 1], 9)];
+    many_passes.extend((0..4096).map(|_| row(&[64, 0], 1)));
+    let mut too_many_passes = chunks::varint(u32::MAX);
+    too_many_passes.extend([12, 3, 1, 9]);
+    let cases = [
+        ("a base of a billion", claim(&[row(&[12, billion, billion], 9)], &[triangle()])),
+        (
+            "a base of a billion with as many bytes announced",
+            claim(&[row(&[12, billion / 5, billion / 5], billion)], &[triangle()]),
+        ),
+        (
+            "a split of a billion",
+            claim(&[row(&[12, 3, 1], 9), row(&[billion / 5, 0], billion)], &[triangle()]),
+        ),
+        ("four thousand passes", claim(&many_passes, &[triangle()])),
+        ("four billion passes", {
+            chunks::join(&[chunks::header(12), Chunk { kind: b'L', payload: too_many_passes }])
+        }),
+        ("a chunk of four gigabytes", {
+            let mut stream = claim(&[row(&[12, 3, 1], 9)], &[]);
+            stream.extend([b'B', 0xff, 0xff, 0xff, 0xff, 0x0f]);
+            stream
+        }),
+        ("a skippable chunk of four gigabytes", {
+            let mut stream = chunks::SIGNATURE.to_vec();
+            stream.extend([b'z', 0xff, 0xff, 0xff, 0xff, 0x0f]);
+            stream
+        }),
+    ];
+    for (what, stream) in cases {
+        for limits in [Limits::default(), Limits::small()] {
+            let mut decoder = Decoder::new(limits);
+            let (result, held) = peak(|| decoder.push(&stream).err());
+            assert!(held < 3 << 20, "{what}: {held} bytes, {result:?}");
+            assert!(!decoder.is_complete(), "{what}");
+        }
+    }
+}
+
+#[test]
+fn rubbish_payloads_take_what_their_counts_need() {
+    let _turn = turn();
+    warm_up();
+    // The most that a payload of this size may claim, filled with every kind of rubbish.
+    const SIZE: u32 = 500;
+    let counts = 64 * (SIZE + 1);
+    let mut random = Random(3);
+    for round in 0..20 {
+        let payload: Vec<u8> = match round {
+            0 => vec![0; SIZE as usize],
+            1 => vec![0xff; SIZE as usize],
+            _ => (0..SIZE).map(|_| random.next() as u8).collect(),
+        };
+        for (vertices, faces) in [(counts, counts), (3, counts), (counts, 1)] {
+            let base = Chunk { kind: b'B', payload: payload.clone() };
+            let stream = claim(&[row(&[12, vertices, faces], SIZE)], &[base]);
+            let mut decoder = Decoder::new(Limits::default());
+            let (_, held) = peak(|| decoder.push(&stream).err());
+            let allowed = (2 << 20) + 300 * counts as usize;
+            assert!(held < allowed, "round {round}: {held} bytes for {vertices} vertices, {faces} faces");
+        }
+    }
+}
