@@ -21,7 +21,7 @@ pub struct EncodeOptions {
     /// How odd vertices are chosen and removed. Default balanced.
     pub partition: Partition,
     /// Grid steps to the mean edge of a level, from which its precision follows: fewer bits early
-    /// make better prefixes, more bits early sometimes make smaller files. Default 12.
+    /// make better prefixes, more bits early sometimes make smaller files. Default 16.
     pub steps_per_edge: f64,
 }
 
@@ -34,7 +34,7 @@ impl Default for EncodeOptions {
             quantization: 12,
             levels: None,
             partition: Partition::default(),
-            steps_per_edge: 12.0,
+            steps_per_edge: 16.0,
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Affine prediction with weights learnt on the way: recursive least squares with forgetting.
 
 use super::neighbourhood::{NUM_FEATURES, Outlook};
-use super::vec3::{Vec3, dot};
+use super::vec3::Direction;
 
 /// Weights before anything is learnt: on a smooth surface half way towards the parallelograms.
-const INITIAL_WEIGHTS: [f64; NUM_FEATURES] = [0.5, 0.35, 0.0, 0.0];
+const INITIAL_WEIGHTS: [f64; NUM_FEATURES] = [0.5, 0.35, 0.0];
 /// Variance of the initial weights over that of the noise.
 const INITIAL_TRUST: f64 = 10.0;
 const FORGETTING: f64 = 0.999;
@@ -30,18 +30,18 @@ impl AffineFilter {
     }
 
     /// Where the vertex should be along `direction`: the ring mean with its weighted corrections.
-    pub(crate) fn predict(&self, outlook: &Outlook, direction: Vec3) -> f64 {
-        let x = outlook.features.map(|f| dot(f, direction));
-        dot(outlook.mean, direction) + sum(self.weights, x)
+    pub(crate) fn predict(&self, outlook: &Outlook, direction: Direction) -> f64 {
+        let x = outlook.features.map(|f| direction.of(f));
+        direction.of(outlook.mean) + sum(self.weights, x)
     }
 
     /// Learns where it is. Lengths count relative to the ring.
-    pub(crate) fn learn(&mut self, outlook: &Outlook, direction: Vec3, truth: f64) {
+    pub(crate) fn learn(&mut self, outlook: &Outlook, direction: Direction, truth: f64) {
         let per_length = 1.0 / outlook.length;
-        let x = outlook.features.map(|f| dot(f, direction) * per_length);
+        let x = outlook.features.map(|f| direction.of(f) * per_length);
         let px: [f64; NUM_FEATURES] = std::array::from_fn(|i| sum(self.covariance[i], x));
         let gain = 1.0 / (1.0 + sum(x, px));
-        let error = (truth - dot(outlook.mean, direction)) * per_length - sum(self.weights, x);
+        let error = (truth - direction.of(outlook.mean)) * per_length - sum(self.weights, x);
         for i in 0..NUM_FEATURES {
             self.weights[i] += px[i] * gain * error;
             for j in 0..NUM_FEATURES {
@@ -64,7 +64,7 @@ impl AffineFilter {
 
 #[inline]
 fn sum(a: [f64; NUM_FEATURES], b: [f64; NUM_FEATURES]) -> f64 {
-    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
 #[cfg(test)]
@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn finds_the_weights_of_a_linear_rule() {
         let mut filter = AffineFilter::new();
-        let rule = [0.8, -0.1, 0.3, 0.05];
+        let rule = [0.8, -0.1, 0.3];
         let mut seed = 1_u32;
         let mut random = || {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -88,9 +88,9 @@ mod tests {
                 normal: [0.0; 3],
                 length: 1.0,
             };
-            let direction = [random(), random(), random()];
-            let offset: f64 = (0..NUM_FEATURES).map(|i| rule[i] * dot(outlook.features[i], direction)).sum();
-            let truth = dot(outlook.mean, direction) + offset;
+            let direction = Direction::Along([random(), random(), random()]);
+            let offset: f64 = (0..NUM_FEATURES).map(|i| rule[i] * direction.of(outlook.features[i])).sum();
+            let truth = direction.of(outlook.mean) + offset;
             error = (filter.predict(&outlook, direction) - truth).abs();
             filter.learn(&outlook, direction, truth);
         }
@@ -100,11 +100,12 @@ mod tests {
     #[test]
     fn survives_nonsense() {
         let mut filter = AffineFilter::new();
-        let outlook = Outlook { mean: [0.0; 3], features: [[1e200; 3]; 4], normal: [0.0; 3], length: 1e-3 };
+        let outlook =
+            Outlook { mean: [0.0; 3], features: [[1e200; 3]; NUM_FEATURES], normal: [0.0; 3], length: 1e-3 };
         for _ in 0..10 {
-            filter.learn(&outlook, [1.0; 3], 1e9);
+            filter.learn(&outlook, Direction::Along([1.0; 3]), 1e9);
         }
-        let tame = Outlook { features: [[1.0; 3]; 4], ..outlook };
-        assert!(filter.predict(&tame, [1.0; 3]).is_finite());
+        let tame = Outlook { features: [[1.0; 3]; NUM_FEATURES], ..outlook };
+        assert!(filter.predict(&tame, Direction::Along([1.0; 3])).is_finite());
     }
 }

@@ -5,10 +5,11 @@
 //! an irregularity or a crease. Their mean is spoilt by those, their median and their mode are not.
 
 use super::neighbourhood::{Neighbourhood, Tip};
-use super::vec3::{Vec3, dot};
+use super::vec3::Direction;
 
-/// Guesses that are looked at; the rest of a large ring is left out.
-const MAX_GUESSES: usize = 24;
+/// Guesses that are looked at; the rest of a large ring is left out (its last neighbour stands in
+/// for those beyond).
+const MAX_GUESSES: usize = 16;
 /// With at least this many guesses the mode is the closest three, else the closest two.
 const ENOUGH_FOR_THREE: usize = 5;
 
@@ -26,46 +27,66 @@ pub(crate) struct Consensus {
 
 /// Gathers the guesses along `direction`: `affine`, the middles of opposite neighbours (closed rings
 /// of even size), and the parallelograms over true outer vertices.
-pub(crate) fn consensus(neighbourhood: &Neighbourhood, direction: Vec3, affine: f64) -> Consensus {
-    let mut guesses = Sorted { values: [0.0; MAX_GUESSES], count: 0 };
-    let ring = &neighbourhood.ring;
-    let degree = ring.len();
+pub(crate) fn consensus(neighbourhood: &Neighbourhood, direction: Direction, affine: f64) -> Consensus {
+    let mut guesses = Guesses::new();
+    let degree = neighbourhood.ring.len();
+    let mut ring = [0.0; MAX_GUESSES];
+    for (place, &p) in ring.iter_mut().zip(&neighbourhood.ring) {
+        *place = direction.of(p);
+    }
     guesses.insert(affine);
-    if neighbourhood.is_closed() && degree.is_multiple_of(2) {
-        for i in 0..(degree / 2).min(MAX_GUESSES / 2) {
-            guesses.insert(0.5 * (dot(ring[i], direction) + dot(ring[i + degree / 2], direction)));
+    if degree <= MAX_GUESSES && neighbourhood.is_closed() && degree.is_multiple_of(2) {
+        let (first, second) = ring[..degree].split_at(degree / 2);
+        for (p, q) in first.iter().zip(second) {
+            guesses.insert(0.5 * (p + q));
         }
     }
     for (i, tip) in neighbourhood.tips.iter().enumerate().take(MAX_GUESSES) {
         if let Tip::Fine(tip) = *tip {
-            let (p, q) = (ring[i], ring[if i + 1 == degree { 0 } else { i + 1 }]);
-            guesses.insert(dot(p, direction) + dot(q, direction) - dot(tip, direction));
+            let after = if i + 1 == degree { 0 } else { i + 1 };
+            let (p, q) = (ring[i], ring[after.min(MAX_GUESSES - 1)]);
+            guesses.insert(p + q - direction.of(tip));
         }
     }
     guesses.consensus()
 }
 
-/// A short sorted list.
-struct Sorted {
+/// A short list of guesses.
+struct Guesses {
     values: [f64; MAX_GUESSES],
     count: usize,
 }
 
-impl Sorted {
-    fn insert(&mut self, value: f64) {
-        if self.count == MAX_GUESSES {
-            return;
-        }
-        let mut i = self.count;
-        while i > 0 && self.values[i - 1] > value {
-            self.values[i] = self.values[i - 1];
-            i -= 1;
-        }
-        self.values[i] = value;
-        self.count += 1;
+impl Guesses {
+    fn new() -> Self {
+        // What is not filled sorts to the end.
+        Self { values: [f64::INFINITY; MAX_GUESSES], count: 0 }
     }
 
-    fn consensus(&self) -> Consensus {
+    #[inline]
+    fn insert(&mut self, value: f64) {
+        if let Some(place) = self.values.get_mut(self.count) {
+            *place = value;
+            self.count += 1;
+        }
+    }
+
+    /// Sorts without branches, by a network of comparisons (Batcher's odd–even merge sort): the
+    /// order of guesses is as good as random, so that branches would be mispredicted.
+    fn sort(&mut self) {
+        if self.count <= 8 {
+            for (i, j) in NETWORK_8 {
+                exchange(&mut self.values, i, j);
+            }
+        } else {
+            for (i, j) in NETWORK_16 {
+                exchange(&mut self.values, i, j);
+            }
+        }
+    }
+
+    fn consensus(mut self) -> Consensus {
+        self.sort();
         let v = &self.values[..self.count];
         let middle = v.len() / 2;
         let median = if v.len() % 2 == 1 { v[middle] } else { 0.5 * (v[middle] + v[middle - 1]) };
@@ -83,12 +104,107 @@ impl Sorted {
     }
 }
 
+const NETWORK_8: [(usize, usize); 19] = [
+    (0, 1),
+    (2, 3),
+    (0, 2),
+    (1, 3),
+    (1, 2),
+    (4, 5),
+    (6, 7),
+    (4, 6),
+    (5, 7),
+    (5, 6),
+    (0, 4),
+    (2, 6),
+    (2, 4),
+    (1, 5),
+    (3, 7),
+    (3, 5),
+    (1, 2),
+    (3, 4),
+    (5, 6),
+];
+const NETWORK_16: [(usize, usize); 63] = [
+    (0, 1),
+    (2, 3),
+    (0, 2),
+    (1, 3),
+    (1, 2),
+    (4, 5),
+    (6, 7),
+    (4, 6),
+    (5, 7),
+    (5, 6),
+    (0, 4),
+    (2, 6),
+    (2, 4),
+    (1, 5),
+    (3, 7),
+    (3, 5),
+    (1, 2),
+    (3, 4),
+    (5, 6),
+    (8, 9),
+    (10, 11),
+    (8, 10),
+    (9, 11),
+    (9, 10),
+    (12, 13),
+    (14, 15),
+    (12, 14),
+    (13, 15),
+    (13, 14),
+    (8, 12),
+    (10, 14),
+    (10, 12),
+    (9, 13),
+    (11, 15),
+    (11, 13),
+    (9, 10),
+    (11, 12),
+    (13, 14),
+    (0, 8),
+    (4, 12),
+    (4, 8),
+    (2, 10),
+    (6, 14),
+    (6, 10),
+    (2, 4),
+    (6, 8),
+    (10, 12),
+    (1, 9),
+    (5, 13),
+    (5, 9),
+    (3, 11),
+    (7, 15),
+    (7, 11),
+    (3, 5),
+    (7, 9),
+    (11, 13),
+    (1, 2),
+    (3, 4),
+    (5, 6),
+    (7, 8),
+    (9, 10),
+    (11, 12),
+    (13, 14),
+];
+
+#[inline(always)]
+fn exchange(values: &mut [f64; MAX_GUESSES], i: usize, j: usize) {
+    let (a, b) = (values[i], values[j]);
+    let swap = b < a;
+    values[i] = if swap { b } else { a };
+    values[j] = if swap { a } else { b };
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn agree(values: &[f64]) -> Consensus {
-        let mut sorted = Sorted { values: [0.0; MAX_GUESSES], count: 0 };
+        let mut sorted = Guesses::new();
         values.iter().for_each(|&v| sorted.insert(v));
         sorted.consensus()
     }
@@ -98,6 +214,24 @@ mod tests {
         let c = agree(&[5.0, 5.1, -80.0, 4.9, 300.0, 9.0]);
         assert_eq!((c.mode, c.median), (5.0, 5.05));
         assert!((c.width - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn networks_sort() {
+        let mut seed = 1_u32;
+        for count in 1..=MAX_GUESSES {
+            for _ in 0..200 {
+                let mut guesses = Guesses::new();
+                for _ in 0..count {
+                    seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    guesses.insert(f64::from(seed >> 28));
+                }
+                let mut expected = guesses.values[..count].to_vec();
+                expected.sort_by(f64::total_cmp);
+                guesses.sort();
+                assert_eq!(guesses.values[..count], expected);
+            }
+        }
     }
 
     #[test]
@@ -120,7 +254,7 @@ mod tests {
         ];
         let mut tips = vec![Tip::Fine([3.0, 2.0, 0.0]); 6];
         tips[1..].fill(Tip::None);
-        let c = consensus(&Neighbourhood { ring, tips }, [1.0, 0.0, 0.0], 0.7);
+        let c = consensus(&Neighbourhood { ring, tips }, Direction::Axis(0), 0.7);
         assert_eq!((c.mode, c.median, c.width), (0.0, 0.0, 0.0));
     }
 }

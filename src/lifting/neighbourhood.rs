@@ -4,7 +4,7 @@
 use super::vec3::{Vec3, add, cross, norm, scale, sub};
 
 /// Directions in which the ring mean may be corrected; see [`Outlook::features`].
-pub(crate) const NUM_FEATURES: usize = 4;
+pub(crate) const NUM_FEATURES: usize = 3;
 
 /// The vertex across a ring edge.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +32,8 @@ pub(crate) struct Outlook {
     /// Mean of the ring.
     pub(crate) mean: Vec3,
     /// Corrections of `mean` that a linear predictor may weigh: towards the parallelograms over
-    /// true outer vertices, over coarse outer vertices, towards the mean weighted by edge lengths,
-    /// and towards the one weighted by inverse distances (for an open ring: towards the middle of
-    /// its ends).
+    /// true outer vertices, over coarse outer vertices, and towards the mean weighted by inverse
+    /// distances (for an open ring: towards the middle of its ends).
     pub(crate) features: [Vec3; NUM_FEATURES],
     /// Area vector of the ring polygon.
     pub(crate) normal: Vec3,
@@ -77,7 +76,6 @@ impl Neighbourhood {
         let length = (total_distance / count).max(MIN_LENGTH);
 
         let mut normal = [0.0; 3];
-        let mut by_edge = ([0.0; 3], 0.0);
         let mut fine = [0.0; 3];
         let mut coarse = [0.0; 3];
         for i in 0..degree {
@@ -88,24 +86,20 @@ impl Neighbourhood {
                 continue;
             }
             let both = add(dp, dq);
-            let edge = norm(sub(p, q));
-            by_edge = (add(by_edge.0, scale(both, 0.5 * edge)), by_edge.1 + edge);
             match self.tips[i] {
                 Tip::None => {}
                 Tip::Fine(tip) => fine = add(fine, sub(both, sub(tip, mean))),
                 Tip::Coarse(tip) => coarse = add(coarse, sub(both, sub(tip, mean))),
             }
         }
-        let weighted =
-            |(sum, weight): (Vec3, f64)| if weight > 0.0 { scale(sum, 1.0 / weight) } else { [0.0; 3] };
         let ends = if self.is_closed() {
-            weighted(by_inverse)
+            scale(by_inverse.0, 1.0 / by_inverse.1)
         } else {
             scale(add(sub(self.ring[0], mean), sub(self.ring[degree - 1], mean)), 0.5)
         };
         Outlook {
             mean,
-            features: [scale(fine, 1.0 / count), scale(coarse, 1.0 / count), weighted(by_edge), ends],
+            features: [scale(fine, 1.0 / count), scale(coarse, 1.0 / count), ends],
             normal,
             length,
         }

@@ -36,3 +36,23 @@ pub(crate) fn norm(a: Vec3) -> f64 {
 pub(crate) fn from_grid(p: [i32; 3]) -> Vec3 {
     [f64::from(p[0]), f64::from(p[1]), f64::from(p[2])]
 }
+
+/// A direction along which points are compared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Direction {
+    /// One of the coordinates.
+    Axis(usize),
+    /// Any vector.
+    Along(Vec3),
+}
+
+impl Direction {
+    /// Place of a point along the direction.
+    #[inline]
+    pub(crate) fn of(self, p: Vec3) -> f64 {
+        match self {
+            Direction::Axis(axis) => p[axis],
+            Direction::Along(d) => dot(p, d),
+        }
+    }
+}

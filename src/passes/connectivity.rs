@@ -26,8 +26,8 @@ pub(crate) const NOT_IN_PATCH: u32 = u32::MAX;
 
 /// Adaptive models, kept from level to level.
 pub(crate) struct ConnectivityModels {
-    in_patch: MixedBit<5>,
-    grow: MixedBit<6>,
+    in_patch: MixedBit<4>,
+    grow: MixedBit<4>,
     ear: PlainBits,
     open: PlainBits,
 }
@@ -40,16 +40,9 @@ const GROW_SETS: usize = 2 * MAX_SIZE;
 impl ConnectivityModels {
     pub(crate) fn new() -> Self {
         Self {
-            in_patch: MixedBit::new([64 * 3 * 16, 27 * 512, 512 * 3, 27 * 64, 4 * 8 * 8 * 3], 8, 0.0, LIMIT),
+            in_patch: MixedBit::new([27 * 512, 512 * 3, 64 * 12, 16 * 8 * 16], 8, 0.0, LIMIT),
             grow: MixedBit::new(
-                [
-                    MAX_SIZE * 16 * 3,
-                    MAX_SIZE * 64 * 4,
-                    MAX_SIZE * 64 * 4,
-                    MAX_SIZE * 64 * 5,
-                    MAX_SIZE * 64,
-                    MAX_SIZE * 16 * 8,
-                ],
+                [MAX_SIZE * 64 * 4, MAX_SIZE * 64 * 4, MAX_SIZE * 64, MAX_SIZE * 32 * 16],
                 GROW_SETS,
                 0.0,
                 LIMIT,
@@ -286,72 +279,60 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn face_contexts(&self, corner: u32, is_seed: bool) -> ([usize; 5], usize) {
+    fn face_contexts(&self, corner: u32, is_seed: bool) -> ([usize; 4], usize) {
         let [a, b, tip] = [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c) as usize);
         let source = if is_seed { 2 } else { self.state_across(corner).saturating_sub(1).min(1) };
         let around = self.state_across(next(corner)) * 4 + self.state_across(prev(corner));
         let urgency = [a, b, tip].map(|v| self.urgency(v));
-        let urgent = urgency[0] * 16 + urgency[1] * 4 + urgency[2];
         let touched = [a, b, tip].iter().fold(0, |t, &v| t * 3 + usize::from(self.touched[v].min(2)));
         let live = [a, b, tip].iter().fold(0, |t, &v| t * 8 + bucket(self.live_valence(v), 3));
         let coarse = [a, b, tip].iter().fold(0, |t, &v| t * 8 + bucket(self.surface.valence[v] as i32, 3));
-        let left = [a, b, tip].iter().fold(0, |t, &v| t * 4 + (self.undecided[v] as usize).min(4) - 1);
 
         let [pa, pb, pt] = [a, b, tip].map(|v| self.positions[v]);
-        let gate_length = squared_distance(pa, pb);
-        let sides = squared_distance(pb, pt) + squared_distance(pt, pa);
-        let shape = share(gate_length * 2.0, sides, 8);
+        let gate = squared_distance(pa, pb);
+        let shape = share(gate * 2.0, squared_distance(pb, pt) + squared_distance(pt, pa), 8);
         let beyond = self.surface.across(corner);
-        let fold = if beyond == NO_CORNER {
-            7
+        let (fold, angle_beyond) = if beyond == NO_CORNER {
+            (7, 4)
         } else {
             let outside = self.positions[self.surface.vertex(beyond) as usize];
-            share(squared_distance(outside, pt), gate_length * 3.0, 8)
+            (share(squared_distance(outside, pt), gate * 3.0, 8), steps(cosine(outside, pa, pb), 8))
         };
         let contexts = [
-            (urgent * 3 + source) * 16 + around,
             touched * 512 + live,
             coarse * 3 + source,
-            touched * 64 + left,
             (shape * 8 + fold) * 12 + urgency[2] * 3 + source,
+            (steps(cosine(pt, pa, pb), 16) * 8 + angle_beyond) * 16 + around,
         ];
-        (contexts, urgency.iter().copied().max().unwrap_or(0) * 2 + usize::from(source == 1))
+        (contexts, urgency[0].max(urgency[1]).max(urgency[2]) * 2 + usize::from(source == 1))
     }
 
-    fn growth_contexts(&self, inside: u32, beyond: u32) -> ([usize; 6], usize) {
+    fn growth_contexts(&self, inside: u32, beyond: u32) -> ([usize; 4], usize) {
         let (_, faces) = self.patches.unfinished();
         let size = faces.len().min(MAX_SIZE) - 1;
         let [a, b, tip, far] =
             [next(inside), prev(inside), inside, beyond].map(|c| self.surface.vertex(c) as usize);
         let [va, vb, vt, vf] = [a, b, tip, far].map(|v| self.live_valence(v));
-        let balance = bucket(va + vb - vt - vf, -7).min(15);
         let pair = |x: i32, y: i32| bucket(x, 2) * 8 + bucket(y, 2);
-        let (low, high) = (va.min(vb), va.max(vb));
-        let around = self.state_across(next(beyond)) * 4 + self.state_across(prev(beyond));
+        let urgency = self.urgency(far);
 
         let [pa, pb, pt, pf] = [a, b, tip, far].map(|v| self.positions[v]);
         let edge = squared_distance(pa, pb);
         let flipped = squared_distance(pt, pf);
-        let delaunay = angle_share(pt, pa, pb) + angle_share(pf, pa, pb);
+        let (near_cosine, far_cosine) = (cosine(pt, pa, pb), cosine(pf, pa, pb));
         let contexts = [
-            (size * 16 + balance) * 3 + usize::from(self.touched[far].min(2)),
-            (size * 64 + pair(low, high)) * 4 + self.urgency(far),
-            (size * 64 + pair(vt, vf)) * 4 + self.urgency(far),
-            ((size * 4 + self.urgency(a)) * 4 + self.urgency(b)) * 20
-                + self.urgency(far) * 5
-                + (self.undecided[far] as usize).min(5)
-                - 1,
-            size * 64 + delaunay * 8 + share(edge, flipped, 8),
-            (size * 16 + around) * 8 + bucket(va + vb, 8),
+            (size * 64 + pair(va.min(vb), va.max(vb))) * 4 + urgency,
+            (size * 64 + pair(vt, vf)) * 4 + urgency,
+            (size * 8 + steps(near_cosine, 4) + steps(far_cosine, 4)) * 8 + share(edge, flipped, 8),
+            (size * 32 + steps(0.5 * (near_cosine + far_cosine), 32)) * 16 + share(flipped, 3.0 * edge, 16),
         ];
-        (contexts, size * 2 + usize::from(self.urgency(far) > 0))
+        (contexts, size * 2 + usize::from(urgency > 0))
     }
 }
 
-/// `value − first` clamped to 0..8 (0..16 where the caller has more room).
+/// `value − first` clamped to 0..8.
 fn bucket(value: i32, first: i32) -> usize {
-    let top = if first < 0 { 15 } else { 7 };
-    (value - first).clamp(0, top) as usize
+    (value - first).clamp(0, 7) as usize
 }
 
 fn difference(p: [i32; 3], q: [i32; 3]) -> [f64; 3] {
@@ -373,10 +354,14 @@ fn share(x: f64, y: f64, levels: usize) -> usize {
     if sum > 0.0 { ((x / sum * levels as f64) as usize).min(levels - 1) } else { levels / 2 }
 }
 
-/// The angle at `tip` over the edge a–b in four steps, by its cosine.
-fn angle_share(tip: [i32; 3], a: [i32; 3], b: [i32; 3]) -> usize {
+/// Cosine of the angle at `tip` over the edge a–b, 0 if a side vanishes.
+fn cosine(tip: [i32; 3], a: [i32; 3], b: [i32; 3]) -> f64 {
     let (u, v) = (difference(a, tip), difference(b, tip));
     let length = (dot(u, u) * dot(v, v)).sqrt();
-    let cosine = if length > 0.0 { dot(u, v) / length } else { 0.0 };
-    ((1.0 - cosine) * 2.0).clamp(0.0, 3.0) as usize
+    if length > 0.0 { dot(u, v) / length } else { 0.0 }
+}
+
+/// A cosine in `count` equal steps, the sharpest angle first.
+fn steps(cosine: f64, count: usize) -> usize {
+    ((1.0 - cosine) * 0.5 * count as f64).clamp(0.0, (count - 1) as f64) as usize
 }

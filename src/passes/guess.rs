@@ -7,7 +7,7 @@ use crate::bitstream::tables::Tables;
 use crate::lifting::affine::AffineFilter;
 use crate::lifting::consensus::consensus;
 use crate::lifting::neighbourhood::Outlook;
-use crate::lifting::vec3::Vec3;
+use crate::lifting::vec3::{Direction, Vec3};
 
 /// Kinds of coordinate in coding order: two along the surface, one across it.
 pub(crate) const NUM_KINDS: usize = 3;
@@ -106,7 +106,7 @@ pub(crate) struct CoordinateGuess {
     /// True if the affine correction points down the axis.
     pub(crate) leans_down: bool,
     kind: usize,
-    direction: Vec3,
+    direction: Direction,
     /// Contribution of the coordinates already known along `direction`.
     known: f64,
     cues: [[f64; NUM_CUES]; NUM_EXPERTS],
@@ -187,19 +187,20 @@ impl<'a> VertexGuess<'a> {
     /// Direction along which a coordinate is guessed, and what the known ones contribute to it. The
     /// last coordinate is guessed along the normal, scaled so that the axis itself counts once: a
     /// guess that lies elsewhere on the surface is moved along its tangent plane.
-    fn direction(&self, kind: usize) -> (Vec3, f64) {
+    fn direction(&self, kind: usize) -> (Direction, f64) {
         let axis = self.axes[kind];
-        let mut direction = [0.0; 3];
-        direction[axis] = 1.0;
-        let mut known = 0.0;
         let n = self.outlook.normal;
-        if kind == ACROSS && n[axis] != 0.0 {
-            for &a in &self.axes[..2] {
-                direction[a] = (n[a] / n[axis]).clamp(-MAX_SLOPE, MAX_SLOPE);
-                known += direction[a] * self.position[a];
-            }
+        if kind != ACROSS || n[axis] == 0.0 {
+            return (Direction::Axis(axis), 0.0);
         }
-        (direction, known)
+        let mut along = [0.0; 3];
+        along[axis] = 1.0;
+        let mut known = 0.0;
+        for &a in &self.axes[..2] {
+            along[a] = (n[a] / n[axis]).clamp(-MAX_SLOPE, MAX_SLOPE);
+            known += along[a] * self.position[a];
+        }
+        (Direction::Along(along), known)
     }
 
     /// Learns a coordinate.

@@ -49,8 +49,8 @@ pub(crate) fn code<B: BitCoder>(
             let low = mesh.positions[v][guess.axis];
             let middle = f64::from(low) + 0.5;
             let mixture = Mixture::new(tables, &guess.experts, middle, false);
-            let (lower, upper) =
-                (mixture.above(-1.0) - mixture.above(0.0), mixture.above(0.0) - mixture.above(1.0));
+            let above_middle = mixture.above(0.0);
+            let (lower, upper) = (mixture.above(-1.0) - above_middle, above_middle - mixture.above(1.0));
             let bucket = |centre: f64| {
                 ((centre - middle) * OFFSETS_PER_STEP + 0.5 * OFFSETS as f64).clamp(0.0, (OFFSETS - 1) as f64)
                     as usize
