@@ -1,5 +1,6 @@
 //! Odd and even: Algorithm 1 against a slow, literal transcription, and what holds of every partition.
 #![cfg(feature = "encoder")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 
@@ -196,8 +197,11 @@ fn options(partition: Partition, descriptor: Descriptor, levels: u32) -> EncodeO
     options
 }
 
-/// The decoded meshes, coarsest first: cells and triangles.
-fn levels(stream: &[u8]) -> Vec<(Vec<[i64; 3]>, Vec<[u32; 3]>)> {
+/// Cells and triangles of a decoded mesh.
+type Decoded = (Vec<[i64; 3]>, Vec<[u32; 3]>);
+
+/// The decoded meshes, coarsest first.
+fn levels(stream: &[u8]) -> Vec<Decoded> {
     let mut decoder = Decoder::new(Limits::default());
     decoder.feed(stream).unwrap();
     let mut levels = Vec::new();
