@@ -8,7 +8,7 @@ use crate::bitstream::header::{self, Action, Grid, Pass};
 use crate::bitstream::mixture::{Expert, NUM_EXPERTS};
 use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
 use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
-use crate::descriptors::Descriptor;
+use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format};
 use crate::mesh::Surface;
 use crate::{
@@ -357,18 +357,16 @@ impl Input<'_> {
 }
 
 fn options_from(input: &mut Input) -> EncodeOptions {
-    let mut options = EncodeOptions::default();
-    options.descriptor = Descriptor::ALL[usize::from(input.u8()) % Descriptor::ALL.len()];
-    options.partition = Partition::ALL[usize::from(input.u8()) % Partition::ALL.len()];
-    options.quantization = 1 + u32::from(input.u8()) % 30;
-    options.levels = match input.u8() % 16 {
-        15 => None,
-        levels => Some(u32::from(levels)),
-    };
-    options.steps_per_edge = f64::from(1 + input.u8() % 64) * 0.5;
-    options.window.rings = 1 + u32::from(input.u8() % 4);
-    options.growth = 1.0 + f64::from(input.u8() % 8);
-    options
+    EncodeOptions {
+        descriptor: Descriptor::ALL[usize::from(input.u8()) % Descriptor::ALL.len()],
+        partition: Partition::ALL[usize::from(input.u8()) % Partition::ALL.len()],
+        quantization: 1 + u32::from(input.u8()) % 30,
+        levels: Some(u32::from(input.u8() % 16)).filter(|&levels| levels < 15),
+        steps_per_edge: f64::from(1 + input.u8() % 64) * 0.5,
+        window: Window { rings: 1 + u32::from(input.u8() % 4), ..Window::default() },
+        growth: 1.0 + f64::from(input.u8() % 8),
+        ..EncodeOptions::default()
+    }
 }
 
 /// Few vertices, so that triangles meet; their coordinates are of one of four kinds.

@@ -6,6 +6,7 @@
 //! ```text
 //! LWC_UPDATE_GOLDEN=1 cargo test --test golden
 //! ```
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! The modules import in one direction only, and each no more than it is meant to.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -1,5 +1,6 @@
 //! How much memory encoder and decoder take, and that no stream can make a decoder take much.
 #![cfg(feature = "encoder")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 

@@ -1,5 +1,6 @@
 //! Every kind of mesh comes back exactly, through every option, and the same bytes come out each time.
 #![cfg(feature = "encoder")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 

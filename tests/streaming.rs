@@ -1,5 +1,6 @@
 //! A stream may arrive in any pieces and end anywhere; what is there is always a mesh.
 #![cfg(feature = "encoder")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 

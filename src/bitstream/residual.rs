@@ -83,9 +83,9 @@ impl ResidualModel {
         let tables = Tables::get();
         let Expectation { experts, best, log_scale, kind, contexts, sign } = *expected;
         let centre = experts[best].centre;
-        let nearest = (centre + 0.5).floor();
+        let base = round_half_up(centre);
+        let nearest = base as f64;
         let fraction = centre - nearest;
-        let base = nearest as i64;
         // Mirrored so that the centre never lies below the nearest integer: halves the contexts.
         let mirrored = fraction < 0.0;
         let offset = fraction.abs();
@@ -184,6 +184,15 @@ impl ResidualModel {
         let residual = if positive { magnitude } else { -magnitude };
         i32::try_from(if mirrored { base - residual } else { base + residual }).ok()
     }
+}
+
+/// The integer nearest to `x`, halves upwards: ⌊x + ½⌋ without the library call that `floor` is
+/// where the processor's own is not assumed.
+#[inline]
+fn round_half_up(x: f64) -> i64 {
+    let shifted = x + 0.5;
+    let truncated = shifted as i64;
+    truncated - i64::from(truncated as f64 > shifted)
 }
 
 #[cfg(test)]

@@ -91,17 +91,27 @@ impl Guesses {
         let middle = v.len() / 2;
         let median = if v.len() % 2 == 1 { v[middle] } else { 0.5 * (v[middle] + v[middle - 1]) };
         let quarter = v.len() / 4;
-        let size = if v.len() >= ENOUGH_FOR_THREE { 3 } else { v.len().min(2) };
-        let mut start = 0;
-        for i in 1..=v.len() - size {
-            if v[i + size - 1] - v[i] < v[start + size - 1] - v[start] {
-                start = i;
-            }
-        }
-        let (first, last) = (v[start], v[start + size - 1]);
-        let mode = if size == 3 { v[start + 1] } else { 0.5 * (first + last) };
+        let (first, mode, last) = if v.len() >= ENOUGH_FOR_THREE {
+            closest(v.windows(3).map(|w| (w[0], w[1], w[2])))
+        } else if v.len() >= 2 {
+            closest(v.windows(2).map(|w| (w[0], 0.5 * (w[0] + w[1]), w[1])))
+        } else {
+            (v[0], v[0], v[0])
+        };
         Consensus { median, spread: v[v.len() - 1 - quarter] - v[quarter], mode, width: last - first }
     }
+}
+
+/// The first of the narrowest (first, middle, last).
+#[inline]
+fn closest(candidates: impl Iterator<Item = (f64, f64, f64)>) -> (f64, f64, f64) {
+    let mut best = (0.0, 0.0, f64::INFINITY);
+    for candidate in candidates {
+        if candidate.2 - candidate.0 < best.2 - best.0 {
+            best = candidate;
+        }
+    }
+    best
 }
 
 const NETWORK_8: [(usize, usize); 19] = [

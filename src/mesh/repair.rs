@@ -20,7 +20,8 @@ pub struct RepairReport {
 /// A mesh cut into an oriented surface.
 pub(crate) struct Repaired {
     pub(crate) surface: Surface,
-    /// For each vertex of `surface` the vertex of the mesh it stands for.
+    /// For each vertex of `surface` the vertex of the mesh it stands for. Ascending, so that ties of
+    /// Algorithm 1 break by the indices of the mesh.
     pub(crate) source: Vec<u32>,
     pub(crate) report: RepairReport,
 }
@@ -82,8 +83,8 @@ fn pair_edges(triangles: &[[u32; 3]], num_vertices: usize) -> Vec<u32> {
     opposite
 }
 
-/// Gives each fan of faces a vertex of its own. The first fan at a vertex comes first, the order
-/// is that of the faces.
+/// Gives each fan of faces a vertex of its own, in the order of the vertices; fans at one vertex in
+/// the order of their first faces.
 fn name_fans(triangles: &[[u32; 3]], opposite: &[u32]) -> (Vec<[u32; 3]>, Vec<u32>) {
     let mut named = vec![[u32::MAX; 3]; triangles.len()];
     let mut source = Vec::new();
@@ -106,6 +107,12 @@ fn name_fans(triangles: &[[u32; 3]], opposite: &[u32]) -> (Vec<[u32; 3]>, Vec<u3
             }
         }
     }
+    let mut order: Vec<u32> = (0..source.len() as u32).collect();
+    order.sort_by_key(|&name| source[name as usize]);
+    let mut place = vec![0; order.len()];
+    order.iter().zip(0..).for_each(|(&name, i)| place[name as usize] = i);
+    named.iter_mut().flatten().for_each(|name| *name = place[*name as usize]);
+    source.sort_unstable();
     (named, source)
 }
 
@@ -150,6 +157,7 @@ mod tests {
         let back = repaired.surface.triangles.iter().map(|t| t.map(|v| repaired.source[v as usize]));
         let kept = mesh.triangles().iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
         assert!(back.eq(kept.copied()));
+        assert!(repaired.source.is_sorted());
         repaired.report
     }
 

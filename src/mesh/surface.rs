@@ -41,7 +41,7 @@ impl Surface {
     /// Vertex at `corner`.
     #[inline]
     pub fn vertex(&self, corner: u32) -> u32 {
-        self.triangles[(corner / 3) as usize][(corner % 3) as usize]
+        self.triangles.as_flattened()[corner as usize]
     }
 
     /// Corner across the edge that faces `corner`.

@@ -131,6 +131,7 @@ impl<'a> VertexGuess<'a> {
     }
 
     /// Guesses the coordinate of `kind`; those before it have been [settled](Self::settle).
+    #[inline(always)]
     pub(crate) fn coordinate(&self, models: &GuessModels, kind: usize) -> CoordinateGuess {
         let tables = Tables::get();
         let axis = self.axes[kind];
@@ -204,6 +205,7 @@ impl<'a> VertexGuess<'a> {
     }
 
     /// Learns a coordinate.
+    #[inline(always)]
     pub(crate) fn settle(&mut self, models: &mut GuessModels, guess: &CoordinateGuess, value: i32) {
         let tables = Tables::get();
         let truth = f64::from(value);
