@@ -1,4 +1,5 @@
-//! Affine prediction with weights learnt on the way: recursive least squares with forgetting.
+//! Affine prediction with weights learnt on the way: recursive least squares with forgetting
+//! (`format/SPEC.md`, section 8.2).
 
 use super::neighbourhood::{NUM_FEATURES, Outlook};
 use super::vec3::Direction;

@@ -1,4 +1,4 @@
-//! Robust prediction: what most of many simple guesses agree on.
+//! Robust prediction: what most of many simple guesses agree on (`format/SPEC.md`, section 8.2).
 //!
 //! On a regular stretch of a mesh (a scan's lattice, a CAD face) the middle of two opposite
 //! neighbours and each parallelogram name the vertex almost exactly, save the few that reach across

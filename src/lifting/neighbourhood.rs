@@ -1,5 +1,5 @@
 //! What surrounds a vertex that is to be predicted: its ring, and the vertices across the ring's
-//! edges.
+//! edges (`format/SPEC.md`, section 8.1).
 
 use super::vec3::{Vec3, add, cross, norm, scale, sub};
 

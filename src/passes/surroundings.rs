@@ -1,4 +1,4 @@
-//! The known positions around a vertex that is coded now.
+//! The known positions around a vertex that is coded now (`format/SPEC.md`, section 8.1).
 
 use super::GridMesh;
 use super::patch::Patches;
