@@ -6,7 +6,7 @@ use super::bytes::write_varint;
 
 /// Largest number of bits per coordinate.
 pub(crate) const MAX_PRECISION: u32 = 30;
-/// Largest number of passes, and so of levels.
+/// Largest number of passes after the base mesh, and so of levels.
 pub(crate) const MAX_PASSES: u32 = 4096;
 /// Vertices that one byte of payload may bring or refine: encoders pad, so that a small stream
 /// cannot ask for a huge mesh.
@@ -112,7 +112,7 @@ pub(crate) struct Pass {
 pub(crate) struct BadTable(pub(crate) &'static str);
 
 /// Reads the table of passes; the first is always the base mesh. The sums of vertices and of faces
-/// stay below 2³².
+/// stay below 2³⁰.
 pub(crate) fn read_passes(payload: &[u8], grid: &Grid) -> Result<Vec<Pass>, BadTable> {
     let short = || BadTable("the table of passes is cut or has a bad number");
     let mut reader = Reader::new(payload);

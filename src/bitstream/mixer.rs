@@ -38,9 +38,9 @@ impl Counter {
         let p = self.0 >> 10;
         let r = u64::from(reciprocal[age as usize]);
         let p = if bit {
-            p + (u64::from((1 << 22) - 1 - p) * r >> 16) as u32
+            p + ((u64::from((1 << 22) - 1 - p) * r) >> 16) as u32
         } else {
-            p - (u64::from(p) * r >> 16) as u32
+            p - ((u64::from(p) * r) >> 16) as u32
         };
         self.0 = p << 10 | (age + 1).min(limit);
     }

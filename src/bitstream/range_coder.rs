@@ -145,7 +145,7 @@ impl BitCoder for RangeDecoder<'_> {
 
 #[inline]
 fn split(range: u32, p1: u32) -> u32 {
-    (u64::from(range) * u64::from(p1) >> 16) as u32
+    ((u64::from(range) * u64::from(p1)) >> 16) as u32
 }
 
 #[cfg(test)]

@@ -62,16 +62,16 @@ impl Surface {
             }
         }
         let mut corners = Vec::new();
-        for v in 0..self.corner_of.len() {
+        for (v, &num_corners) in corners_at.iter().enumerate() {
             let corner = self.corner_of[v];
             if corner == NO_CORNER {
                 return Err(SurfaceError::NotOneFan(v as u32));
             }
             let closed = self.fan(corner, &mut corners);
-            if corners.len() as u32 != corners_at[v] {
+            if corners.len() as u32 != num_corners {
                 return Err(SurfaceError::NotOneFan(v as u32));
             }
-            self.valence[v] = corners_at[v] + u32::from(!closed);
+            self.valence[v] = num_corners + u32::from(!closed);
         }
         Ok(())
     }

@@ -20,7 +20,7 @@ pub fn next(corner: u32) -> u32 {
 /// The corner before `corner` in its triangle.
 #[inline]
 pub fn prev(corner: u32) -> u32 {
-    if corner % 3 == 0 { corner + 2 } else { corner - 1 }
+    if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 }
 }
 
 /// An oriented triangle surface, possibly with boundary, of any number of components: every

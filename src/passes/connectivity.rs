@@ -48,7 +48,7 @@ impl ConnectivityModels {
                 LIMIT,
             ),
             ear: PlainBits::new(3),
-            open: PlainBits::new(2),
+            open: PlainBits::new(1),
         }
     }
 }
