@@ -102,16 +102,4 @@ impl Surface {
         corners.rotate_left(after);
         false
     }
-
-    /// Fills `ring` with the neighbours of the vertex at `corner`, counter-clockwise; an open ring
-    /// goes from one boundary edge to the other. Returns whether it is closed.
-    pub fn ring(&self, corner: u32, corners: &mut Vec<u32>, ring: &mut Vec<u32>) -> bool {
-        let closed = self.fan(corner, corners);
-        ring.clear();
-        ring.extend(corners.iter().map(|&c| self.vertex(next(c))));
-        if !closed && let Some(&last) = corners.last() {
-            ring.push(self.vertex(prev(last)));
-        }
-        closed
-    }
 }

@@ -23,6 +23,7 @@ pub(crate) struct BaseTarget<'a> {
 }
 
 /// The coded mesh, and where its parts come from in the target (empty when decoding).
+#[cfg_attr(not(feature = "encoder"), allow(dead_code))]
 pub(crate) struct Base {
     pub(crate) mesh: GridMesh,
     /// Target vertex of each vertex.

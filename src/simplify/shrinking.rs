@@ -68,7 +68,13 @@ impl ShrinkingSurface {
     pub(crate) fn read_star(&self, vertex: u32, star: &mut Star) {
         star.vertex = vertex;
         let corner = self.surface.corner_of[vertex as usize];
-        self.surface.ring(corner, &mut star.corners, &mut star.ring);
+        let surface = &self.surface;
+        let closed = surface.fan(corner, &mut star.corners);
+        star.ring.clear();
+        star.ring.extend(star.corners.iter().map(|&c| surface.vertex(next(c))));
+        if !closed && let Some(&last) = star.corners.last() {
+            star.ring.push(surface.vertex(prev(last)));
+        }
     }
 
     /// True if an edge joins the two vertices.
