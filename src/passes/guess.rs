@@ -3,14 +3,13 @@
 
 use super::surroundings::{NUM_CLASSES, Surroundings};
 use crate::bitstream::mixture::{Expert, NUM_EXPERTS};
+pub(crate) use crate::bitstream::residual::NUM_KINDS;
 use crate::bitstream::tables::Tables;
 use crate::lifting::affine::AffineFilter;
 use crate::lifting::consensus::consensus;
 use crate::lifting::neighbourhood::Outlook;
 use crate::lifting::vec3::{Direction, Vec3};
 
-/// Kinds of coordinate in coding order: two along the surface, one across it.
-pub(crate) const NUM_KINDS: usize = 3;
 /// Kind of the coordinate closest to the normal.
 pub(crate) const ACROSS: usize = 2;
 /// Inputs of the scale models.
