@@ -11,6 +11,7 @@ Draco runs with -cl 10 and the same number of bits, without normals and texture 
 cannot leave out, so give it meshes without. If it is not installed, its columns say so.
 """
 import argparse
+import json
 import os
 import pathlib
 import shutil
@@ -71,7 +72,6 @@ def main():
     print("| mesh | vertices | lwc, bpv | Draco, bpv | size, ratio | encode, kv/s wall | CPU ratio to Draco "
           "| decode, kv/s CPU | CPU ratio to Draco | encoder, bytes/v | decoder, bytes/v |")
     print("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|")
-    import json
     for path in options.meshes:
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
