@@ -5,7 +5,7 @@
 use crate::bitstream::bytes::{Reader, write_varint};
 use crate::bitstream::chunk::{self, Frame, kind};
 use crate::bitstream::header::{self, Action, Grid, Pass};
-use crate::bitstream::mixture::{Expert, NUM_EXPERTS};
+use crate::bitstream::mixture::{Mixture, NUM_EXPERTS};
 use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
 use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
 use crate::descriptors::{Descriptor, Window};
@@ -152,13 +152,13 @@ pub fn range_coder(data: &[u8]) {
             std::iter::from_fn(|| (!input.0.is_empty()).then(|| Case::from(&mut input))).collect();
         let (mut encoder, mut model) = (RangeEncoder::new(), ResidualModel::new());
         for case in &cases {
-            let coded = model.code(&mut encoder, &case.expectation(), case.value);
+            let coded = model.code(&mut encoder, &case.expectation, case.value);
             assert_eq!(coded, Some(case.value));
         }
         let bytes = encoder.finish();
         let (mut decoder, mut model) = (RangeDecoder::new(&bytes), ResidualModel::new());
         for case in &cases {
-            assert_eq!(model.code(&mut decoder, &case.expectation(), 0), Some(case.value));
+            assert_eq!(model.code(&mut decoder, &case.expectation, 0), Some(case.value));
         }
         assert!(!decoder.is_exhausted());
     }
@@ -166,40 +166,31 @@ pub fn range_coder(data: &[u8]) {
 
 /// A residual within the ranges that passes keep to.
 struct Case {
-    experts: [Expert; NUM_EXPERTS],
-    best: usize,
-    kind: usize,
-    contexts: [usize; 2],
-    sign: usize,
+    expectation: Expectation,
     value: i32,
 }
 
 impl Case {
     fn from(input: &mut Input) -> Self {
-        let experts = std::array::from_fn(|_| Expert {
-            centre: f64::from(input.u32() as i32 >> (input.u8() % 31) as i32) / 3.0,
-            scale: f64::from(input.u8() % 37).exp2() * 0.06,
-            weight: 0.02 + f64::from(input.u8()) / 256.0,
-        });
-        Self {
-            experts,
-            best: usize::from(input.u8()) % NUM_EXPERTS,
+        let mut mixture = Mixture::default();
+        let mut log_scales = [0.0; NUM_EXPERTS];
+        for i in 0..NUM_EXPERTS {
+            log_scales[i] = f32::from(input.u8() % 37) - 4.0;
+            mixture.centre.0[i] = (input.u32() as i32 >> (input.u8() % 31)) as f32 / 3.0;
+            mixture.sharpness.0[i] = (-log_scales[i]).exp2();
+            mixture.weight.0[i] = 0.02 + f32::from(input.u8()) / 256.0;
+        }
+        let best = usize::from(input.u8()) % NUM_EXPERTS;
+        let expectation = Expectation {
+            origin: (input.u32() as i32) >> (2 + input.u8() % 29),
+            mixture,
+            best,
+            log_scale: log_scales[best],
             kind: usize::from(input.u8()) % NUM_KINDS,
             contexts: [0; 2].map(|_| usize::from(input.u8()) % CALLER_CONTEXTS),
             sign: usize::from(input.u8()) % SIGN_CONTEXTS,
-            value: (input.u32() as i32) >> (input.u8() % 31),
-        }
-    }
-
-    fn expectation(&self) -> Expectation<'_> {
-        Expectation {
-            experts: &self.experts,
-            best: self.best,
-            log_scale: self.experts[self.best].scale.log2(),
-            kind: self.kind,
-            contexts: self.contexts,
-            sign: self.sign,
-        }
+        };
+        Self { expectation, value: (input.u32() as i32) >> (input.u8() % 31) }
     }
 }
 

@@ -1,80 +1,74 @@
 //! Densities of integers: several experts, each a centre and a scale (`format/SPEC.md`, section 6.4).
 
 use super::tables::Tables;
+use crate::lifting::lanes::Lanes;
 
-/// Experts of a mixture.
-pub(crate) const NUM_EXPERTS: usize = 3;
+/// Experts of a mixture: one per lane.
+pub(crate) const NUM_EXPERTS: usize = 4;
 
-/// One guess at an integer.
+/// Guesses at an integer; lane `i` is what expert `i` says.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Expert {
-    /// Most likely value, within ±2³⁰.
-    pub(crate) centre: f64,
-    /// Typical distance from it.
-    pub(crate) scale: f64,
-    /// Trust in the expert; those of a mixture need not add up to one.
-    pub(crate) weight: f64,
+pub(crate) struct Mixture {
+    /// Most likely value, within ±2³⁰ of the origin that the integer is counted from.
+    pub(crate) centre: Lanes,
+    /// One over the typical distance from it.
+    pub(crate) sharpness: Lanes,
+    /// Trust in the expert; they need not add up to one.
+    pub(crate) weight: Lanes,
 }
 
-impl Expert {
-    /// How well the expert did, up to a factor: trust times a density with heavy flanks at the value
-    /// that came. Cheaper than the exact mass, and as good for weighing experts.
-    #[inline]
-    pub(crate) fn score(&self, value: f64) -> f64 {
-        /// Variance of the rounding to integers.
-        const ROUNDING: f64 = 1.0 / 12.0;
-        let distance = value - self.centre;
-        let variance = self.scale * self.scale;
-        let spread = variance + ROUNDING + distance * distance;
-        self.weight * self.scale * variance / (spread * spread)
-    }
-}
-
-/// Sum of experts, seen from an origin in one direction.
-pub(crate) struct Mixture<'a> {
-    tables: &'a Tables,
-    /// Centre, 1 / scale, weight.
-    parts: [[f64; 3]; NUM_EXPERTS],
-}
-
-impl<'a> Mixture<'a> {
-    /// Puts `origin` at 0; downwards if `mirrored`.
-    pub(crate) fn new(
-        tables: &'a Tables,
-        experts: &[Expert; NUM_EXPERTS],
-        origin: f64,
-        mirrored: bool,
-    ) -> Self {
-        let parts = std::array::from_fn(|i| {
-            let e = &experts[i];
-            let centre = e.centre - origin;
-            [if mirrored { -centre } else { centre }, 1.0 / e.scale, e.weight]
-        });
-        Self { tables, parts }
+impl Mixture {
+    /// One expert alone.
+    pub(crate) fn single(centre: f32, scale: f32) -> Self {
+        let weight = Lanes([1.0, 0.0, 0.0, 0.0]);
+        Self { centre: Lanes::splat(centre), sharpness: Lanes::splat(1.0 / scale), weight }
     }
 
-    /// Turns the direction around.
-    pub(crate) fn flip(&mut self) {
-        self.parts.iter_mut().for_each(|p| p[0] = -p[0]);
+    /// The expert with the highest peak, the first one if equal.
+    #[inline(always)]
+    pub(crate) fn best(&self) -> usize {
+        let peak = (self.weight * self.sharpness).0;
+        let pair = |i: usize| if peak[i + 1] > peak[i] { i + 1 } else { i };
+        let (a, b) = (pair(0), pair(2));
+        if peak[b] > peak[a] { b } else { a }
+    }
+
+    /// The same seen from `origin`, downwards if `mirrored`.
+    #[inline(always)]
+    pub(crate) fn seen_from(&self, origin: f32, mirrored: bool) -> Self {
+        let centre = self.centre - Lanes::splat(origin);
+        Self { centre: centre * if mirrored { -1.0 } else { 1.0 }, ..*self }
     }
 
     /// All mass.
-    pub(crate) fn total(&self) -> f64 {
-        (self.parts[0][2] + self.parts[1][2]) + self.parts[2][2]
+    #[inline(always)]
+    pub(crate) fn total(&self) -> f32 {
+        self.weight.sum()
     }
 
     /// Mass above `x`.
-    #[inline]
-    pub(crate) fn above(&self, x: f64) -> f64 {
-        let part = |[centre, step, weight]: [f64; 3]| weight * self.tables.tail((x - centre) * step);
-        (part(self.parts[0]) + part(self.parts[1])) + part(self.parts[2])
+    #[inline(always)]
+    pub(crate) fn above(&self, tables: &Tables, x: f32) -> f32 {
+        (self.weight * tables.tail((Lanes::splat(x) - self.centre) * self.sharpness)).sum()
     }
 
     /// Mass below `x`.
-    #[inline]
-    pub(crate) fn below(&self, x: f64) -> f64 {
-        let part = |[centre, step, weight]: [f64; 3]| weight * self.tables.tail((centre - x) * step);
-        (part(self.parts[0]) + part(self.parts[1])) + part(self.parts[2])
+    #[inline(always)]
+    pub(crate) fn below(&self, tables: &Tables, x: f32) -> f32 {
+        (self.weight * tables.tail((self.centre - Lanes::splat(x)) * self.sharpness)).sum()
+    }
+
+    /// How well each expert did, up to a common factor: trust times a density with heavy flanks at
+    /// the value that came. Cheaper than the exact mass, and as good for weighing experts.
+    #[inline(always)]
+    pub(crate) fn scores(&self, value: f32) -> Lanes {
+        /// Variance of the rounding to integers.
+        const ROUNDING: f32 = 1.0 / 12.0;
+        let distance = self.centre - Lanes::splat(value);
+        let precision = self.sharpness * self.sharpness;
+        // scale³ / (scale² + rounding + distance²)², with the scale divided out.
+        let spread = Lanes::splat(1.0) + (distance * distance + Lanes::splat(ROUNDING)) * precision;
+        self.weight * self.sharpness.zip(spread, |s, r| s / (r * r))
     }
 }
 
@@ -84,28 +78,33 @@ mod tests {
 
     #[test]
     fn masses_add_up() {
-        let experts = [
-            Expert { centre: 3.2, scale: 1.5, weight: 0.5 },
-            Expert { centre: -1.0, scale: 4.0, weight: 0.3 },
-            Expert { centre: 3.0, scale: 0.1, weight: 0.3 },
-        ];
+        let mixture = Mixture {
+            centre: Lanes([3.2, -1.0, 3.0, 0.0]),
+            sharpness: Lanes([1.5, 0.25, 10.0, 1.0]),
+            weight: Lanes([0.5, 0.3, 0.3, 0.0]),
+        };
         let tables = Tables::get();
         for mirrored in [false, true] {
-            let mut mixture = Mixture::new(tables, &experts, 3.0, mirrored);
+            let seen = mixture.seen_from(3.0, mirrored);
             for x in [-20.0, -0.5, 0.0, 0.5, 7.0] {
-                assert!((mixture.above(x) + mixture.below(x) - mixture.total()).abs() < 1e-6);
+                assert!((seen.above(tables, x) + seen.below(tables, x) - seen.total()).abs() < 1e-3);
             }
-            let above = mixture.above(0.5);
-            mixture.flip();
-            assert!((mixture.below(-0.5) - above).abs() < 1e-12);
+            let other = mixture.seen_from(3.0, !mirrored);
+            assert!((seen.above(tables, 0.5) - other.below(tables, -0.5)).abs() < 1e-6);
         }
+        assert_eq!(mixture.best(), 2);
     }
 
     #[test]
     fn the_closer_and_the_surer_expert_scores_higher() {
-        let expert = |centre, scale| Expert { centre, scale, weight: 0.5 };
-        assert!(expert(3.0, 1.0).score(3.0) > expert(5.0, 1.0).score(3.0));
-        assert!(expert(3.0, 1.0).score(3.0) > expert(3.0, 4.0).score(3.0));
-        assert!(expert(9.0, 4.0).score(3.0) > expert(9.0, 1.0).score(3.0));
+        let mixture = Mixture {
+            centre: Lanes([3.0, 5.0, 3.0, 9.0]),
+            sharpness: Lanes([1.0, 1.0, 0.25, 0.25]),
+            weight: Lanes::splat(0.5),
+        };
+        let [near, far, vague, vague_far] = mixture.scores(3.0).0;
+        assert!(near > far && near > vague && vague > vague_far);
+        let [sharp, _, _, vague] = Mixture { centre: Lanes::splat(9.0), ..mixture }.scores(3.0).0;
+        assert!(vague > sharp);
     }
 }

@@ -4,7 +4,7 @@
 //! binary decision goes into the mixer beside the adaptive contexts, which correct its shape.
 
 use super::mixer::MixedBit;
-use super::mixture::{Expert, Mixture, NUM_EXPERTS};
+use super::mixture::Mixture;
 use super::range_coder::{BitCoder, PROBABILITY_ONE};
 use super::tables::Tables;
 
@@ -23,12 +23,13 @@ const MODELLED_MANTISSA: u32 = 2;
 
 /// What is known of an integer before it is coded.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Expectation<'a> {
-    pub(crate) experts: &'a [Expert; NUM_EXPERTS],
-    /// The expert from whose centre the integer is counted.
+pub(crate) struct Expectation {
+    /// The integer from which everything is counted.
+    pub(crate) origin: i32,
+    pub(crate) mixture: Mixture,
+    /// The expert whose centre is rounded, and the base-2 logarithm of its scale.
     pub(crate) best: usize,
-    /// Base-2 logarithm of that expert's scale.
-    pub(crate) log_scale: f64,
+    pub(crate) log_scale: f32,
     /// Which of the [`NUM_KINDS`] kinds of number it is.
     pub(crate) kind: usize,
     /// Two contexts of [`CALLER_CONTEXTS`] values.
@@ -81,23 +82,23 @@ impl ResidualModel {
         value: i32,
     ) -> Option<i32> {
         let tables = Tables::get();
-        let Expectation { experts, best, log_scale, kind, contexts, sign } = *expected;
-        let centre = experts[best].centre;
-        let base = round_half_up(centre);
-        let nearest = base as f64;
-        let fraction = centre - nearest;
+        let Expectation { origin, ref mixture, best, log_scale, kind, contexts, sign } = *expected;
+        let centre = mixture.centre.0[best];
+        let nearest = round_half_up(centre);
+        let fraction = centre - nearest as f32;
+        let base = i64::from(origin) + i64::from(nearest);
         // Mirrored so that the centre never lies below the nearest integer: halves the contexts.
         let mirrored = fraction < 0.0;
         let offset = fraction.abs();
         let residual = if mirrored { base - i64::from(value) } else { i64::from(value) - base };
 
-        let mut mixture = Mixture::new(tables, experts, nearest, mirrored);
+        let mixture = mixture.seen_from(nearest as f32, mirrored);
         let total = mixture.total();
         let bucket = ((log_scale * 4.0 + 12.0) as usize).min(SCALE_BUCKETS - 1);
-        let offset_bucket = ((offset * (2 * OFFSET_BUCKETS) as f64) as usize).min(OFFSET_BUCKETS - 1);
+        let offset_bucket = ((offset * (2 * OFFSET_BUCKETS) as f32) as usize).min(OFFSET_BUCKETS - 1);
         let by_scale = kind * SCALE_BUCKETS + bucket;
 
-        let (up, down) = (mixture.above(0.5), mixture.below(-0.5));
+        let (up, down) = (mixture.above(tables, 0.5), mixture.below(tables, -0.5));
         let p_zero = (total - up - down) / total;
         let zero = self.zero.code(
             coder,
@@ -120,30 +121,29 @@ impl ResidualModel {
             kind,
             residual > 0,
         );
-        if !positive {
-            mixture.flip();
-        }
+        let mixture = mixture.seen_from(0.0, !positive);
         let magnitude = residual.unsigned_abs();
 
-        // Exponent, one step at a time: is the magnitude at least 2^(exponent + 1)?
+        // Exponent, one step at a time: is the magnitude at least 2^(exponent + 1)? The magnitude
+        // lies between `low` and `high`, whose masses above are known.
         let mut exponent = 0_u32;
-        let mut tail = if positive { up } else { down };
+        let mut above_low = if positive { up } else { down };
+        let mut above_high;
         loop {
-            let next_tail = mixture.above((2_u64 << exponent) as f64 - 0.5);
+            above_high = mixture.above(tables, (2_u64 << exponent) as f32 - 0.5);
             let e = exponent as usize;
             let more = self.more.code(
                 coder,
                 tables,
                 [by_scale * EXPONENTS + e, contexts[0] * EXPONENTS + e, contexts[1] * EXPONENTS + e],
-                &[tables.stretch_real(next_tail / tail)],
+                &[tables.stretch_real(above_high / above_low)],
                 kind * EXPONENTS + e,
                 magnitude >= 2 << exponent,
             );
             if !more {
-                tail -= next_tail;
                 break;
             }
-            tail = next_tail;
+            above_low = above_high;
             exponent += 1;
             if exponent as usize == EXPONENTS {
                 return None;
@@ -152,13 +152,11 @@ impl ResidualModel {
 
         // Mantissa, halving the interval [low, low + 2^exponent).
         let mut low = 1_u64 << exponent;
-        let mut mass = tail;
         for depth in 0..exponent {
-            let half = 1_u64 << (exponent - 1 - depth);
-            let middle = low + half;
+            let middle = low + (1_u64 << (exponent - 1 - depth));
             let bit = magnitude >= middle;
-            let upper = mixture.above(middle as f64 - 0.5) - mixture.above((middle + half) as f64 - 0.5);
-            let p_upper = upper / mass;
+            let above_middle = mixture.above(tables, middle as f32 - 0.5);
+            let p_upper = (above_middle - above_high) / (above_low - above_high);
             let upper_half = if depth < MODELLED_MANTISSA {
                 let d = depth as usize * EXPONENTS + exponent as usize;
                 self.mantissa.code(
@@ -170,14 +168,14 @@ impl ResidualModel {
                     bit,
                 )
             } else {
-                let p1 = (p_upper * f64::from(PROBABILITY_ONE)) as u32;
+                let p1 = (p_upper * PROBABILITY_ONE as f32) as u32;
                 coder.code(bit, p1.clamp(PROBABILITY_ONE / 8, PROBABILITY_ONE / 2))
             };
             if upper_half {
                 low = middle;
-                mass = upper;
+                above_low = above_middle;
             } else {
-                mass -= upper;
+                above_high = above_middle;
             }
         }
         let magnitude = low as i64;
@@ -188,49 +186,51 @@ impl ResidualModel {
 
 /// The integer nearest to `x`, halves upwards: ⌊x + ½⌋ without the library call that `floor` is
 /// where the processor's own is not assumed.
-#[inline]
-fn round_half_up(x: f64) -> i64 {
+#[inline(always)]
+fn round_half_up(x: f32) -> i32 {
     let shifted = x + 0.5;
-    let truncated = shifted as i64;
-    truncated - i64::from(truncated as f64 > shifted)
+    let truncated = shifted as i32;
+    truncated - i32::from(truncated as f32 > shifted)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lifting::lanes::Lanes;
     use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
 
-    fn experts(centre: f64, scale: f64) -> [Expert; NUM_EXPERTS] {
-        [Expert { centre, scale, weight: 0.4 }; NUM_EXPERTS]
-    }
-
-    fn expectation(experts: &[Expert; NUM_EXPERTS]) -> Expectation<'_> {
-        let log_scale = experts[1].scale.log2();
-        Expectation { experts, best: 1, log_scale, kind: 1, contexts: [3, 5], sign: 2 }
+    fn expectation(origin: i32, centre: f32, scale: f32) -> Expectation {
+        let mixture = Mixture {
+            centre: Lanes::splat(centre),
+            sharpness: Lanes::splat(1.0 / scale),
+            weight: Lanes::splat(0.3),
+        };
+        Expectation { origin, mixture, best: 1, log_scale: scale.log2(), kind: 1, contexts: [3, 5], sign: 2 }
     }
 
     #[test]
     fn every_value_returns() {
         let values = [0, 1, -1, 2, -2, 3, 17, -100, 4095, -70_000, 1 << 30, -(1 << 30)];
-        let centres = [0.0, 0.49, -0.5, 0.5, 1e3, -7.25, 1e9, f64::from(1 << 30), -f64::from(1 << 30)];
+        let origins = [0, 1000, 1 << 30, -(1 << 30)];
+        let centres = [0.0, 0.49, -0.5, 0.5, 1e3, -7.25, 1e9, -1e9];
         let scales = [0.05, 1.0, 30.0, 1e6];
         let mut cases = Vec::new();
         for value in values {
-            for centre in centres {
-                cases.extend(scales.map(|scale| (value, experts(centre, scale))));
+            for origin in origins {
+                for centre in centres {
+                    cases.extend(scales.map(|scale| (value, expectation(origin, centre, scale))));
+                }
             }
         }
         let mut encoder = RangeEncoder::new();
         let mut model = ResidualModel::new();
-        for (value, experts) in &cases {
-            let expected = &expectation(experts);
+        for (value, expected) in &cases {
             assert_eq!(model.code(&mut encoder, expected, *value), Some(*value));
         }
         let bytes = encoder.finish();
         let mut decoder = RangeDecoder::new(&bytes);
         let mut model = ResidualModel::new();
-        for (value, experts) in &cases {
-            let expected = &expectation(experts);
+        for (value, expected) in &cases {
             assert_eq!(model.code(&mut decoder, expected, 0), Some(*value), "{expected:?}");
         }
     }
@@ -240,7 +240,7 @@ mod tests {
         let mut encoder = RangeEncoder::new();
         let mut model = ResidualModel::new();
         for i in 0..10_000 {
-            model.code(&mut encoder, &expectation(&experts(f64::from(i) + 0.1, 0.1)), i);
+            model.code(&mut encoder, &expectation(i, 0.1, 0.1), i);
         }
         assert!(encoder.finish().len() < 60);
     }

@@ -3,6 +3,7 @@
 //! The decoder may not call a library's logarithm: its last bits differ between platforms. These
 //! are made of + − × ÷ in a fixed order, tabulated once.
 
+use crate::lifting::lanes::Lanes;
 use std::sync::LazyLock;
 
 /// Entries of the logistic table over [−12, 12).
@@ -14,21 +15,23 @@ const STRETCH_SIZE: usize = 4096;
 const P_MIN: u32 = 24;
 const P_MAX: u32 = 65_536 - P_MIN;
 /// The tail table covers [−TAIL_LIMIT, TAIL_LIMIT] with this many steps to a unit.
-const TAIL_LIMIT: f64 = 40.0;
-const TAIL_STEPS: f64 = 16.0;
-const TAIL_SIZE: usize = 2 * 40 * 16 + 2;
+const TAIL_LIMIT: f32 = 40.0;
+const TAIL_STEPS: f32 = 8.0;
+const TAIL_MIDDLE: u32 = 40 * 8;
+/// Twice the middle and one, up to a power of two.
+const TAIL_SIZE: usize = 1024;
 /// Widths and share of the two logistic densities whose sum has this tail.
 const NARROW: f64 = 0.8;
 const WIDE: f64 = 2.4;
 const NARROW_SHARE: f64 = 0.75;
-const LOG_STEPS: usize = 256;
+/// Adding this to a number within ±2²² leaves the nearest integer in the lowest bits.
+const ROUND: f32 = 12_582_912.0;
 
 pub(crate) struct Tables {
     squash: Box<[u16; SQUASH_SIZE]>,
     stretch: Box<[f32; STRETCH_SIZE]>,
-    tail: Box<[f32; TAIL_SIZE]>,
-    log2_mantissa: Vec<f64>,
-    exp2_fraction: Vec<f64>,
+    /// Value and slope at each step.
+    tail: Box<[[f32; 2]; TAIL_SIZE]>,
 }
 
 static TABLES: LazyLock<Tables> = LazyLock::new(Tables::build);
@@ -48,21 +51,18 @@ impl Tables {
             let p = (i as f64 + 0.5) / STRETCH_SIZE as f64;
             ln(p / (1.0 - p)) as f32
         };
+        let tail = |step: f64| {
+            let logistic = |width: f64| 1.0 / (1.0 + exp(step / f64::from(TAIL_STEPS) / width));
+            NARROW_SHARE * logistic(NARROW) + (1.0 - NARROW_SHARE) * logistic(WIDE)
+        };
         let tail = |i: usize| {
-            let z = i as f64 / TAIL_STEPS - TAIL_LIMIT;
-            let logistic = |width: f64| 1.0 / (1.0 + exp(z / width));
-            (NARROW_SHARE * logistic(NARROW) + (1.0 - NARROW_SHARE) * logistic(WIDE)) as f32
+            let step = (i as f64).min(f64::from(2 * TAIL_MIDDLE)) - f64::from(TAIL_MIDDLE);
+            [tail(step) as f32, (0.5 * (tail(step + 1.0) - tail(step - 1.0))) as f32]
         };
         Self {
             squash: Box::new(std::array::from_fn(squash)),
             stretch: Box::new(std::array::from_fn(stretch)),
             tail: Box::new(std::array::from_fn(tail)),
-            log2_mantissa: (0..LOG_STEPS)
-                .map(|i| ln(1.0 + (i as f64 + 0.5) / LOG_STEPS as f64) / ln(2.0))
-                .collect(),
-            exp2_fraction: (0..LOG_STEPS)
-                .map(|i| exp((i as f64 + 0.5) / LOG_STEPS as f64 * ln(2.0)))
-                .collect(),
         }
     }
 
@@ -80,37 +80,45 @@ impl Tables {
     }
 
     /// ln(p / (1 − p)) of a probability as a real number; out of range counts as the nearest end.
-    #[inline]
-    pub(crate) fn stretch_real(&self, p: f64) -> f32 {
-        self.stretch[((p * STRETCH_SIZE as f64) as usize).min(STRETCH_SIZE - 1)]
+    #[inline(always)]
+    pub(crate) fn stretch_real(&self, p: f32) -> f32 {
+        self.stretch[((p * STRETCH_SIZE as f32) as usize).min(STRETCH_SIZE - 1)]
     }
 
-    /// Share of the unit density above `z`: a narrow logistic with a wide one below it, which gives
-    /// it the heavy flanks that residuals have.
-    #[inline]
-    pub(crate) fn tail(&self, z: f64) -> f64 {
-        let t = (z.clamp(-TAIL_LIMIT, TAIL_LIMIT) + TAIL_LIMIT) * TAIL_STEPS;
-        let i = t as usize;
-        let (a, b) = (f64::from(self.tail[i]), f64::from(self.tail[i + 1]));
-        a + (b - a) * (t - i as f64)
+    /// Share of the unit density above `z`, per lane: a narrow logistic with a wide one below it,
+    /// which gives it the heavy flanks that residuals have.
+    #[inline(always)]
+    pub(crate) fn tail(&self, z: Lanes) -> Lanes {
+        let step = z.clamp(-TAIL_LIMIT, TAIL_LIMIT) * TAIL_STEPS;
+        let rounded = step + Lanes::splat(ROUND);
+        let rest = step - (rounded - Lanes::splat(ROUND));
+        let entry = rounded.0.map(|r| {
+            let i = r.to_bits().wrapping_sub(ROUND.to_bits()).wrapping_add(TAIL_MIDDLE);
+            self.tail[i as usize % TAIL_SIZE]
+        });
+        Lanes(entry.map(|[value, _]| value)) + Lanes(entry.map(|[_, slope]| slope)) * rest
     }
+}
 
-    /// Base-2 logarithm of a positive, normal number, to about 0.003.
-    #[inline]
-    pub(crate) fn log2(&self, x: f64) -> f64 {
-        let bits = x.to_bits();
-        let exponent = (bits >> 52 & 0x7ff) as i64 - 1023;
-        exponent as f64 + self.log2_mantissa[(bits >> 44 & 0xff) as usize]
-    }
+/// Base-2 logarithm of a positive, normal number, to about 0.0002.
+#[inline(always)]
+pub(crate) fn log2(x: f32) -> f32 {
+    const C: [f32; 3] = [0.438_725_7, -0.239_058_1, 0.082_130_6];
+    let bits = x.to_bits();
+    let exponent = (bits >> 23) as i32 - 127;
+    let t = f32::from_bits(bits & 0x007f_ffff | 0x3f80_0000) - 1.0;
+    (exponent as f32 + t) + (t * (1.0 - t)) * (C[0] + t * (C[1] + t * C[2]))
+}
 
-    /// Two to the power `y`, `y` within −60..60, to about 0.2 %.
-    #[inline]
-    pub(crate) fn exp2(&self, y: f64) -> f64 {
-        let t = (y.clamp(-60.0, 60.0) + 64.0) * LOG_STEPS as f64;
-        let i = t as usize;
-        let power = f64::from_bits(((i / LOG_STEPS) as u64 + 1023 - 64) << 52);
-        self.exp2_fraction[i % LOG_STEPS] * power
-    }
+/// Two to the power `y`, `y` within −60..60, to about 0.01 %.
+#[inline(always)]
+pub(crate) fn exp2(y: f32) -> f32 {
+    const C: [f32; 4] = [0.999_928_04, 0.693_261_04, 0.242_611_64, 0.055_171_57];
+    let y = y.clamp(-60.0, 60.0);
+    let rounded = y + ROUND;
+    let f = y - (rounded - ROUND);
+    let power = f32::from_bits(rounded.to_bits().wrapping_sub(ROUND.to_bits()).wrapping_add(127) << 23);
+    (C[0] + f * (C[1] + f * (C[2] + f * C[3]))) * power
 }
 
 /// e^x for |x| ≤ 64: Taylor series of x / 2^10, squared ten times.
@@ -165,14 +173,15 @@ mod tests {
             let p = 1.0 / (1.0 + (-x).exp());
             assert!((f64::from(tables.squash(x as f32)) / 65_536.0 - p).abs() < 1.6e-3);
             let logistic = |width: f64| 1.0 / (1.0 + (x / width).exp());
-            assert!((tables.tail(x) - 0.75 * logistic(0.8) - 0.25 * logistic(2.4)).abs() < 2e-4);
-            assert!((tables.log2(f64::from(i)) - f64::from(i).log2()).abs() < 3e-3);
-            assert!((tables.exp2(x) / x.exp2() - 1.0).abs() < 2e-3);
+            let wanted = 0.75 * logistic(0.8) + 0.25 * logistic(2.4);
+            let [tail, ..] = tables.tail(Lanes::splat(x as f32)).0;
+            assert!((f64::from(tail) / wanted - 1.0).abs() < 4e-3, "{x}: {tail} for {wanted}");
+            assert!((f64::from(log2(i as f32)) - f64::from(i).log2()).abs() < 2e-4);
+            assert!((f64::from(exp2(x as f32)) / x.exp2() - 1.0).abs() < 1e-4);
         }
         assert_eq!(tables.squash(-1e9), P_MIN);
         assert_eq!(tables.squash(1e9), P_MAX);
         assert_eq!(tables.squash(f32::NAN), P_MIN);
-        assert!(tables.tail(f64::NAN).is_nan());
     }
 
     /// The bits of the tables are part of the format.
@@ -182,10 +191,8 @@ mod tests {
         let mut hash = crc32fast::Hasher::new();
         t.squash.iter().for_each(|v| hash.update(&v.to_le_bytes()));
         t.stretch.iter().for_each(|v| hash.update(&v.to_bits().to_le_bytes()));
-        t.tail.iter().for_each(|v| hash.update(&v.to_bits().to_le_bytes()));
-        for table in [&t.log2_mantissa, &t.exp2_fraction] {
-            table.iter().for_each(|v| hash.update(&v.to_bits().to_le_bytes()));
-        }
+        let used = &t.tail[..=2 * TAIL_MIDDLE as usize];
+        used.iter().flatten().for_each(|v| hash.update(&v.to_bits().to_le_bytes()));
         assert_eq!(format!("{:08x}", hash.finalize()), "1bf8a372");
     }
 }

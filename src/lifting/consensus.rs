@@ -4,114 +4,105 @@
 //! neighbours and each parallelogram name the vertex almost exactly, save the few that reach across
 //! an irregularity or a crease. Their mean is spoilt by those, their median and their mode are not.
 
-use super::neighbourhood::{Neighbourhood, Tip};
-use super::vec3::Direction;
+use super::lanes::Lanes;
 
-/// Guesses that are looked at; the rest of a large ring is left out (its last neighbour stands in
-/// for those beyond).
-const MAX_GUESSES: usize = 16;
+/// Guesses that are looked at; the rest of a large ring is left out.
+pub(crate) const MAX_GUESSES: usize = 16;
 /// With at least this many guesses the mode is the closest three, else the closest two.
 const ENOUGH_FOR_THREE: usize = 5;
 
-/// Agreement of the guesses along one direction.
+/// Agreement of the guesses, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Consensus {
-    pub(crate) median: f64,
+    pub(crate) median: Lanes,
     /// Distance between the quartiles.
-    pub(crate) spread: f64,
+    pub(crate) spread: Lanes,
     /// Centre of the closest guesses.
-    pub(crate) mode: f64,
+    pub(crate) mode: Lanes,
     /// Distance between the outer ones of them.
-    pub(crate) width: f64,
-}
-
-/// Gathers the guesses along `direction`: `affine`, the middles of opposite neighbours (closed rings
-/// of even size), and the parallelograms over true outer vertices.
-pub(crate) fn consensus(neighbourhood: &Neighbourhood, direction: Direction, affine: f64) -> Consensus {
-    let mut guesses = Guesses::new();
-    let degree = neighbourhood.ring.len();
-    let mut ring = [0.0; MAX_GUESSES];
-    for (place, &p) in ring.iter_mut().zip(&neighbourhood.ring) {
-        *place = direction.of(p);
-    }
-    guesses.insert(affine);
-    if degree <= MAX_GUESSES && neighbourhood.is_closed() && degree.is_multiple_of(2) {
-        let (first, second) = ring[..degree].split_at(degree / 2);
-        for (p, q) in first.iter().zip(second) {
-            guesses.insert(0.5 * (p + q));
-        }
-    }
-    for (i, tip) in neighbourhood.tips.iter().enumerate().take(MAX_GUESSES) {
-        if let Tip::Fine(tip) = *tip {
-            let after = if i + 1 == degree { 0 } else { i + 1 };
-            let (p, q) = (ring[i], ring[after.min(MAX_GUESSES - 1)]);
-            guesses.insert(p + q - direction.of(tip));
-        }
-    }
-    guesses.consensus()
+    pub(crate) width: Lanes,
 }
 
 /// A short list of guesses.
-struct Guesses {
-    values: [f64; MAX_GUESSES],
+pub(crate) struct Guesses {
+    values: [Lanes; MAX_GUESSES],
     count: usize,
 }
 
 impl Guesses {
-    fn new() -> Self {
+    #[inline(always)]
+    pub(crate) fn new() -> Self {
         // What is not filled sorts to the end.
-        Self { values: [f64::INFINITY; MAX_GUESSES], count: 0 }
+        Self { values: [Lanes::splat(f32::INFINITY); MAX_GUESSES], count: 0 }
     }
 
-    #[inline]
-    fn insert(&mut self, value: f64) {
+    /// Adds a guess if there is room.
+    #[inline(always)]
+    pub(crate) fn insert(&mut self, value: Lanes) {
         if let Some(place) = self.values.get_mut(self.count) {
             *place = value;
             self.count += 1;
         }
     }
 
-    /// Sorts without branches, by a network of comparisons (Batcher's odd–even merge sort): the
-    /// order of guesses is as good as random, so that branches would be mispredicted.
+    /// Sorts each coordinate for itself, by a network of comparisons (Batcher's odd–even merge
+    /// sort): the same steps for all of them, and no branches.
+    #[inline(always)]
     fn sort(&mut self) {
-        if self.count <= 8 {
-            for (i, j) in NETWORK_8 {
-                exchange(&mut self.values, i, j);
-            }
-        } else {
+        for (i, j) in NETWORK_8 {
+            self.exchange(i, j);
+        }
+        if self.count > 12 {
             for (i, j) in NETWORK_16 {
-                exchange(&mut self.values, i, j);
+                self.exchange(i, j);
+            }
+        } else if self.count > 8 {
+            for (i, j) in NETWORK_12 {
+                self.exchange(i, j);
             }
         }
     }
 
-    fn consensus(mut self) -> Consensus {
+    #[inline(always)]
+    fn exchange(&mut self, i: usize, j: usize) {
+        let (a, b) = (self.values[i], self.values[j]);
+        self.values[i] = a.min(b);
+        self.values[j] = a.max(b);
+    }
+
+    /// What they agree on. There must be one guess.
+    #[inline]
+    pub(crate) fn consensus(mut self) -> Consensus {
         self.sort();
-        let v = &self.values[..self.count];
+        let count = self.count.min(MAX_GUESSES);
+        let v = &self.values[..count];
         let middle = v.len() / 2;
-        let median = if v.len() % 2 == 1 { v[middle] } else { 0.5 * (v[middle] + v[middle - 1]) };
+        let median = if v.len() % 2 == 1 { v[middle] } else { (v[middle] + v[middle - 1]) * 0.5 };
         let quarter = v.len() / 4;
-        let (first, mode, last) = if v.len() >= ENOUGH_FOR_THREE {
-            closest(v.windows(3).map(|w| (w[0], w[1], w[2])))
-        } else if v.len() >= 2 {
-            closest(v.windows(2).map(|w| (w[0], 0.5 * (w[0] + w[1]), w[1])))
+        let spread = v[v.len() - 1 - quarter] - v[quarter];
+        if v.len() < ENOUGH_FOR_THREE {
+            let last = v.len().min(2) - 1;
+            let (mode, width) = closest(v, last, |first, last| (v[first] + v[last]) * 0.5);
+            Consensus { median, spread, mode, width }
         } else {
-            (v[0], v[0], v[0])
-        };
-        Consensus { median, spread: v[v.len() - 1 - quarter] - v[quarter], mode, width: last - first }
+            let (mode, width) = closest(v, 2, |first, _| v[first + 1]);
+            Consensus { median, spread, mode, width }
+        }
     }
 }
 
-/// The first of the narrowest (first, middle, last).
-#[inline]
-fn closest(candidates: impl Iterator<Item = (f64, f64, f64)>) -> (f64, f64, f64) {
-    let mut best = (0.0, 0.0, f64::INFINITY);
-    for candidate in candidates {
-        if candidate.2 - candidate.0 < best.2 - best.0 {
-            best = candidate;
-        }
+/// Centre and width of the first of the narrowest runs from `i` to `i + step`.
+#[inline(always)]
+fn closest(v: &[Lanes], step: usize, centre: impl Fn(usize, usize) -> Lanes) -> (Lanes, Lanes) {
+    let mut best = centre(0, step);
+    let mut least = v[step] - v[0];
+    for first in 1..v.len() - step {
+        let (c, width) = (centre(first, first + step), v[first + step] - v[first]);
+        let (kept, narrow) = (best, least);
+        best = Lanes(std::array::from_fn(|k| if width.0[k] < narrow.0[k] { c.0[k] } else { kept.0[k] }));
+        least = narrow.min(width);
     }
-    best
+    (best, least)
 }
 
 /// The network for eight values is how the one for sixteen begins.
@@ -119,12 +110,29 @@ const NETWORK_8: [(usize, usize); 19] = {
     let mut first = [(0, 0); 19];
     let mut k = 0;
     while k < first.len() {
-        first[k] = NETWORK_16[k];
+        first[k] = BATCHER_16[k];
         k += 1;
     }
     first
 };
-const NETWORK_16: [(usize, usize); 63] = [
+
+/// What follows for up to `N` values: comparisons with empty places would change nothing.
+const fn rest<const LEN: usize>(count: usize) -> [(usize, usize); LEN] {
+    let mut rest = [(0, 0); LEN];
+    let (mut k, mut len) = (NETWORK_8.len(), 0);
+    while k < BATCHER_16.len() {
+        if BATCHER_16[k].1 < count {
+            rest[len] = BATCHER_16[k];
+            len += 1;
+        }
+        k += 1;
+    }
+    assert!(len == LEN);
+    rest
+}
+const NETWORK_12: [(usize, usize); 23] = rest(12);
+const NETWORK_16: [(usize, usize); 44] = rest(16);
+const BATCHER_16: [(usize, usize); 63] = [
     (0, 1),
     (2, 3),
     (0, 2),
@@ -190,29 +198,29 @@ const NETWORK_16: [(usize, usize); 63] = [
     (13, 14),
 ];
 
-#[inline(always)]
-fn exchange(values: &mut [f64; MAX_GUESSES], i: usize, j: usize) {
-    let (a, b) = (values[i], values[j]);
-    let swap = b < a;
-    values[i] = if swap { b } else { a };
-    values[j] = if swap { a } else { b };
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn agree(values: &[f64]) -> Consensus {
-        let mut sorted = Guesses::new();
-        values.iter().for_each(|&v| sorted.insert(v));
-        sorted.consensus()
+    fn collect(values: &[f32]) -> Guesses {
+        let mut guesses = Guesses::new();
+        // Another order in each coordinate.
+        let reversed = values.iter().rev();
+        values.iter().zip(reversed).for_each(|(&a, &b)| guesses.insert(Lanes([a, b, -a, 0.0])));
+        guesses
+    }
+
+    fn agree(values: &[f32]) -> [f32; 4] {
+        let c = collect(values).consensus();
+        assert_eq!((c.median.0[0], c.mode.0[0]), (c.median.0[1], c.mode.0[1]));
+        assert_eq!(c.median.0[0], -c.median.0[2]);
+        [c.median, c.spread, c.mode, c.width].map(|l| l.0[0])
     }
 
     #[test]
     fn outliers_do_not_count() {
-        let c = agree(&[5.0, 5.1, -80.0, 4.9, 300.0, 9.0]);
-        assert_eq!((c.mode, c.median), (5.0, 5.05));
-        assert!((c.width - 0.2).abs() < 1e-12);
+        let [median, _, mode, width] = agree(&[5.0, 5.125, -80.0, 4.875, 300.0, 9.0]);
+        assert_eq!((median, mode, width), (5.0625, 5.0, 0.25));
     }
 
     #[test]
@@ -220,40 +228,28 @@ mod tests {
         let mut seed = 1_u32;
         for count in 1..=MAX_GUESSES {
             for _ in 0..200 {
-                let mut guesses = Guesses::new();
-                for _ in 0..count {
+                let mut random = || {
                     seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                    guesses.insert(f64::from(seed >> 28));
-                }
-                let mut expected = guesses.values[..count].to_vec();
-                expected.sort_by(f64::total_cmp);
+                    (seed >> 28) as f32
+                };
+                let values: Vec<f32> = (0..count).map(|_| random()).collect();
+                let mut guesses = collect(&values);
                 guesses.sort();
-                assert_eq!(guesses.values[..count], expected);
+                let mut expected = values;
+                expected.sort_by(f32::total_cmp);
+                for lane in 0..2 {
+                    let sorted: Vec<f32> = guesses.values[..count].iter().map(|v| v.0[lane]).collect();
+                    assert_eq!(sorted, expected);
+                }
             }
         }
     }
 
     #[test]
     fn few_guesses_are_enough() {
-        assert_eq!(agree(&[2.0]), Consensus { median: 2.0, spread: 0.0, mode: 2.0, width: 0.0 });
-        assert_eq!(agree(&[2.0, 4.0]), Consensus { median: 3.0, spread: 2.0, mode: 3.0, width: 2.0 });
-        let many: Vec<f64> = (0..100).map(f64::from).collect();
-        assert!(agree(&many).median.is_finite());
-    }
-
-    #[test]
-    fn opposite_neighbours_and_parallelograms_meet_on_a_lattice() {
-        let ring = vec![
-            [2.0, 0.0, 0.0],
-            [1.0, 2.0, 0.0],
-            [-1.0, 2.0, 0.0],
-            [-2.0, 0.0, 0.0],
-            [-1.0, -2.0, 0.0],
-            [1.0, -2.0, 0.0],
-        ];
-        let mut tips = vec![Tip::Fine([3.0, 2.0, 0.0]); 6];
-        tips[1..].fill(Tip::None);
-        let c = consensus(&Neighbourhood { ring, tips }, Direction::Axis(0), 0.7);
-        assert_eq!((c.mode, c.median, c.width), (0.0, 0.0, 0.0));
+        assert_eq!(agree(&[2.0]), [2.0, 0.0, 2.0, 0.0]);
+        assert_eq!(agree(&[2.0, 4.0]), [3.0, 2.0, 3.0, 2.0]);
+        let many: Vec<f32> = (0..100).map(|i| i as f32).collect();
+        assert!(collect(&many).consensus().median.0[0].is_finite());
     }
 }

@@ -3,5 +3,5 @@
 
 pub(crate) mod affine;
 pub(crate) mod consensus;
+pub(crate) mod lanes;
 pub(crate) mod neighbourhood;
-pub(crate) mod vec3;

@@ -1,107 +1,88 @@
 //! What surrounds a vertex that is to be predicted: its ring, and the vertices across the ring's
 //! edges (`format/SPEC.md`, section 8.1).
 
-use super::vec3::{Vec3, add, cross, norm, scale, sub};
+use super::lanes::Lanes;
 
 /// Directions in which the ring mean may be corrected; see [`Outlook::features`].
 pub(crate) const NUM_FEATURES: usize = 3;
 
-/// The vertex across a ring edge.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Tip {
-    /// The edge lies on the boundary.
-    None,
-    /// The true third vertex of the triangle outside.
-    Fine(Vec3),
-    /// That vertex is not known yet; this is the one that stood there in the coarse mesh.
-    Coarse(Vec3),
-}
-
-/// Known positions around an unknown vertex.
+/// Known points around an unknown vertex, relative to an origin close by.
 #[derive(Default)]
 pub(crate) struct Neighbourhood {
     /// Neighbours, counter-clockwise.
-    pub(crate) ring: Vec<Vec3>,
-    /// Across the ring edges `ring[i]`–`ring[i + 1]`: as many as the ring has vertices if it is
-    /// closed, else one fewer.
-    pub(crate) tips: Vec<Tip>,
+    pub(crate) ring: Vec<Lanes>,
+    pub(crate) is_closed: bool,
+    /// Over each ring edge whose outer vertex is known: the point that makes a parallelogram with it.
+    pub(crate) parallelograms: Vec<Lanes>,
+    /// Sum and number of such points over the other ring edges, with the vertex that stood outside
+    /// in the coarse mesh.
+    pub(crate) coarse: (Lanes, u32),
 }
 
 /// What a neighbourhood says of the vertex inside.
 pub(crate) struct Outlook {
     /// Mean of the ring.
-    pub(crate) mean: Vec3,
+    pub(crate) mean: Lanes,
     /// Corrections of `mean` that a linear predictor may weigh: towards the parallelograms over
     /// true outer vertices, over coarse outer vertices, and towards the mean weighted by inverse
     /// distances (for an open ring: towards the middle of its ends).
-    pub(crate) features: [Vec3; NUM_FEATURES],
+    pub(crate) features: [Lanes; NUM_FEATURES],
     /// Area vector of the ring polygon.
-    pub(crate) normal: Vec3,
+    pub(crate) normal: Lanes,
     /// Mean distance of the ring from its mean, at least [`MIN_LENGTH`].
-    pub(crate) length: f64,
+    pub(crate) length: f32,
 }
 
 /// Length that stands in for a collapsed ring, in grid steps.
-const MIN_LENGTH: f64 = 0.25;
+const MIN_LENGTH: f32 = 0.25;
 
 impl Neighbourhood {
     pub(crate) fn clear(&mut self) {
         self.ring.clear();
-        self.tips.clear();
-    }
-
-    pub(crate) fn is_closed(&self) -> bool {
-        self.ring.len() == self.tips.len()
+        self.parallelograms.clear();
+        self.coarse = (Lanes::ZERO, 0);
     }
 
     /// Summarises the neighbourhood. The ring must not be empty.
+    #[inline]
     pub(crate) fn outlook(&self) -> Outlook {
         let degree = self.ring.len();
-        let count = degree as f64;
-        let mut sum = [0.0; 3];
+        let share = 1.0 / degree as f32;
+        let mut sum = Lanes::ZERO;
         for &p in &self.ring {
-            sum = add(sum, p);
+            sum += p;
         }
-        let mean = scale(sum, 1.0 / count);
+        let mean = sum * share;
 
         let mut total_distance = 0.0;
-        let mut by_inverse = ([0.0; 3], 0.0);
+        let mut by_inverse = (Lanes::ZERO, 0.0);
+        let mut normal = Lanes::ZERO;
+        let mut before = self.ring[degree - 1] - mean;
         for &p in &self.ring {
-            let d = sub(p, mean);
-            let distance = norm(d);
+            let d = p - mean;
+            let distance = d.dot3(d).sqrt();
             total_distance += distance;
             let weight = 1.0 / (distance + MIN_LENGTH);
-            by_inverse = (add(by_inverse.0, scale(d, weight)), by_inverse.1 + weight);
+            by_inverse = (by_inverse.0 + d * weight, by_inverse.1 + weight);
+            normal += before.cross(d);
+            before = d;
         }
-        let length = (total_distance / count).max(MIN_LENGTH);
 
-        let mut normal = [0.0; 3];
-        let mut fine = [0.0; 3];
-        let mut coarse = [0.0; 3];
-        for i in 0..degree {
-            let (p, q) = (self.ring[i], self.ring[if i + 1 == degree { 0 } else { i + 1 }]);
-            let (dp, dq) = (sub(p, mean), sub(q, mean));
-            normal = add(normal, cross(dp, dq));
-            if i >= self.tips.len() {
-                continue;
-            }
-            let both = add(dp, dq);
-            match self.tips[i] {
-                Tip::None => {}
-                Tip::Fine(tip) => fine = add(fine, sub(both, sub(tip, mean))),
-                Tip::Coarse(tip) => coarse = add(coarse, sub(both, sub(tip, mean))),
-            }
+        let mut fine = Lanes::ZERO;
+        for &p in &self.parallelograms {
+            fine += p - mean;
         }
-        let ends = if self.is_closed() {
-            scale(by_inverse.0, 1.0 / by_inverse.1)
+        let coarse = self.coarse.0 - mean * self.coarse.1 as f32;
+        let ends = if self.is_closed {
+            by_inverse.0 * (1.0 / by_inverse.1)
         } else {
-            scale(add(sub(self.ring[0], mean), sub(self.ring[degree - 1], mean)), 0.5)
+            (self.ring[0] + self.ring[degree - 1]) * 0.5 - mean
         };
         Outlook {
             mean,
-            features: [scale(fine, 1.0 / count), scale(coarse, 1.0 / count), ends],
+            features: [fine * share, coarse * share, ends],
             normal,
-            length,
+            length: (total_distance * share).max(MIN_LENGTH),
         }
     }
 }
@@ -112,26 +93,31 @@ mod tests {
 
     #[test]
     fn parallelograms_complete_a_lattice() {
-        // A hexagonal ring and the six vertices outside its edges: every parallelogram meets the centre.
+        // A hexagonal ring; every parallelogram over its edges meets the centre.
         let corner = |k: usize| {
-            let angle = std::f64::consts::FRAC_PI_3 * k as f64;
-            [10.0 * angle.cos() + 5.0, 10.0 * angle.sin() + 7.0, 2.0]
+            let angle = std::f32::consts::FRAC_PI_3 * k as f32;
+            Lanes([10.0 * angle.cos() + 5.0, 10.0 * angle.sin() + 7.0, 2.0, 0.0])
         };
-        let ring: Vec<Vec3> = (0..6).map(corner).collect();
-        let centre = [5.0, 7.0, 2.0];
-        let tips = (0..6).map(|i| Tip::Fine(sub(add(ring[i], ring[(i + 1) % 6]), centre))).collect();
-        let outlook = Neighbourhood { ring, tips }.outlook();
-        let error = norm(sub(add(outlook.mean, outlook.features[0]), centre));
-        assert!(error < 1e-12);
-        assert!((outlook.length - 10.0).abs() < 1e-12);
-        assert!(outlook.normal[2] > 0.0 && outlook.normal[0].abs() < 1e-9);
+        let centre = Lanes([5.0, 7.0, 2.0, 0.0]);
+        let neighbourhood = Neighbourhood {
+            ring: (0..6).map(corner).collect(),
+            is_closed: true,
+            parallelograms: vec![centre; 6],
+            ..Default::default()
+        };
+        let outlook = neighbourhood.outlook();
+        let error = outlook.mean + outlook.features[0] - centre;
+        assert!(error.dot3(error) < 1e-9);
+        assert!((outlook.length - 10.0).abs() < 1e-5);
+        assert!(outlook.normal.0[2] > 0.0 && outlook.normal.0[0].abs() < 1e-4);
     }
 
     #[test]
     fn one_point_is_enough() {
-        let outlook = Neighbourhood { ring: vec![[3.0, 4.0, 5.0]; 4], tips: vec![Tip::None; 4] }.outlook();
-        assert_eq!(outlook.mean, [3.0, 4.0, 5.0]);
-        assert_eq!(outlook.features, [[0.0; 3]; NUM_FEATURES]);
+        let ring = vec![Lanes([3.0, 4.0, 5.0, 0.0]); 4];
+        let outlook = Neighbourhood { ring: ring.clone(), is_closed: true, ..Default::default() }.outlook();
+        assert_eq!(outlook.mean, ring[0]);
+        assert_eq!(outlook.features, [Lanes::ZERO; NUM_FEATURES]);
         assert_eq!(outlook.length, MIN_LENGTH);
     }
 }

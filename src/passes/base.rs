@@ -3,10 +3,10 @@
 
 use super::{GridMesh, Malformed};
 use crate::bitstream::mixer::PlainBits;
-use crate::bitstream::mixture::{Expert, NUM_EXPERTS};
+use crate::bitstream::mixture::Mixture;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::residual::{Expectation, NUM_KINDS, ResidualModel};
-use crate::bitstream::tables::Tables;
+use crate::bitstream::tables::log2;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use std::collections::{HashMap, VecDeque};
@@ -84,7 +84,7 @@ struct Grower<'a> {
     syntax: PlainBits,
     residuals: ResidualModel,
     /// Running mean of the size of residuals, per kind of guess.
-    mean_size: [f64; NUM_KINDS],
+    mean_size: [f32; NUM_KINDS],
     vertex_source: Vec<u32>,
     /// Vertex of each target vertex, where it has one.
     vertex_of_target: Vec<u32>,
@@ -123,7 +123,7 @@ impl<'a> Grower<'a> {
             gates: VecDeque::new(),
             syntax: PlainBits::new(context::COUNT),
             residuals: ResidualModel::new(),
-            mean_size: [f64::from(1_u32 << precision) / 8.0; NUM_KINDS],
+            mean_size: [(1_u32 << precision) as f32 / 8.0; NUM_KINDS],
             vertex_source: Vec::new(),
             vertex_of_target: vec![u32::MAX; target_vertices],
             corner_source: Vec::new(),
@@ -148,7 +148,7 @@ impl<'a> Grower<'a> {
                     (0, None) => ([self.limit / 2; 3], Guess::FirstOfSeed),
                     _ => (self.positions[triangle[0] as usize], Guess::RestOfSeed),
                 };
-                triangle[i] = self.code_vertex(coder, guess.map(f64::from), kind, wanted)?;
+                triangle[i] = self.code_vertex(coder, guess, kind, wanted)?;
             } else {
                 triangle[i] = self.code_known(coder, known)?;
             }
@@ -172,7 +172,7 @@ impl<'a> Grower<'a> {
 
         let tip = if self.syntax.code(coder, context::IS_NEW, known == u32::MAX) {
             let [pa, pb, pc] = [a, b, c].map(|v| self.positions[v as usize]);
-            let guess = std::array::from_fn(|i| f64::from(pa[i]) + f64::from(pb[i]) - f64::from(pc[i]));
+            let guess = std::array::from_fn(|i| pa[i] + (pb[i] - pc[i]));
             self.code_vertex(coder, guess, Guess::Parallelogram, wanted)?
         } else {
             let right = self.boundary_neighbour(next(gate), next);
@@ -218,7 +218,7 @@ impl<'a> Grower<'a> {
     fn code_vertex<B: BitCoder>(
         &mut self,
         coder: &mut B,
-        guess: [f64; 3],
+        guess: [i32; 3],
         kind: Guess,
         wanted: Option<u32>,
     ) -> Result<u32, Malformed> {
@@ -226,18 +226,17 @@ impl<'a> Grower<'a> {
         if vertex == self.num_vertices {
             return Err(Malformed("the base mesh has more vertices than announced"));
         }
-        let tables = Tables::get();
         let kind = kind as usize;
         let wanted_position = wanted.and_then(|w| self.target.map(|t| t.positions[w as usize]));
+        let scale = self.mean_size[kind].max(0.3);
         let mut position = [0; 3];
         let mut size = 0.0;
         for axis in 0..3 {
-            let scale = self.mean_size[kind].max(0.3);
-            let experts = [Expert { centre: guess[axis], scale, weight: 0.4 }; NUM_EXPERTS];
             let expected = Expectation {
-                experts: &experts,
+                origin: guess[axis],
+                mixture: Mixture::single(0.0, scale),
                 best: 0,
-                log_scale: tables.log2(scale),
+                log_scale: log2(scale),
                 kind,
                 contexts: [axis, 3],
                 sign: 2 * axis,
@@ -247,7 +246,7 @@ impl<'a> Grower<'a> {
             position[axis] = value
                 .filter(|v| (0..self.limit).contains(v))
                 .ok_or(Malformed("a base vertex lies outside the grid"))?;
-            size += (f64::from(position[axis]) - guess[axis]).abs();
+            size += (i64::from(position[axis]) - i64::from(guess[axis])).unsigned_abs() as f32;
         }
         self.mean_size[kind] += (size / 3.0 - self.mean_size[kind]) * 0.2;
         self.positions.push(position);

@@ -34,14 +34,15 @@ pub(crate) fn code<B: BitCoder>(
     let limit = 1_i64 << precision;
     for patch in 0..patches.len() {
         surroundings.gather_odd(mesh, patches, patch);
-        let mut vertex = VertexGuess::new(&surroundings);
+        let mut vertex = VertexGuess::new(&models.guesses, &surroundings);
         let wanted = target.map_or([0; 3], |t| t[patch]);
         let class = surroundings.class();
         let mut position = [0; 3];
         for kind in 0..NUM_KINDS {
             let guess = vertex.coordinate(&models.guesses, kind);
             let expected = Expectation {
-                experts: &guess.experts,
+                origin: surroundings.origin[guess.axis],
+                mixture: guess.mixture,
                 best: guess.best,
                 log_scale: guess.log_scale,
                 kind,
@@ -54,7 +55,7 @@ pub(crate) fn code<B: BitCoder>(
             let value = models.residuals.code(coder, &expected, wanted[guess.axis]);
             let value = value.filter(|&v| (0..limit).contains(&i64::from(v)));
             let value = value.ok_or(Malformed("a vertex lies outside the grid"))?;
-            vertex.settle(&mut models.guesses, &guess, value);
+            vertex.settle(&mut models.guesses, &guess, kind, value);
             position[guess.axis] = value;
         }
         mesh.positions.push(position);

@@ -1,130 +1,188 @@
-//! From a neighbourhood to the density of each coordinate (`format/SPEC.md`, section 8.3): three
-//! experts, each with a scale that follows a linear model, weighed by how well they did.
+//! From a neighbourhood to the density of each coordinate (`format/SPEC.md`, section 8.3): experts,
+//! each with a scale that follows a linear model, weighed by how well they did.
 
 use super::surroundings::{NUM_CLASSES, Surroundings};
-use crate::bitstream::mixture::{Expert, NUM_EXPERTS};
+use crate::bitstream::mixture::Mixture;
 pub(crate) use crate::bitstream::residual::NUM_KINDS;
-use crate::bitstream::tables::Tables;
+use crate::bitstream::tables::{exp2, log2};
 use crate::lifting::affine::AffineFilter;
-use crate::lifting::consensus::consensus;
-use crate::lifting::neighbourhood::Outlook;
-use crate::lifting::vec3::{Direction, Vec3};
+use crate::lifting::consensus::{Consensus, Guesses, MAX_GUESSES};
+use crate::lifting::lanes::Lanes;
+use crate::lifting::neighbourhood::{NUM_FEATURES, Outlook};
 
 /// Kind of the coordinate closest to the normal.
 pub(crate) const ACROSS: usize = 2;
 /// Inputs of the scale models.
 const NUM_CUES: usize = 7;
 /// Smallest length that counts in a logarithm, in grid steps.
-const FLOOR: f64 = 0.35;
-/// Typical residual over the exponential of its mean logarithm.
-const SCALE_FACTOR: f64 = 0.85;
+const FLOOR: f32 = 0.35;
+/// Typical residual over the exponential of its mean logarithm, and its inverse.
+const SCALE_FACTOR: f32 = 0.85;
+const SHARPNESS_FACTOR: f32 = 1.0 / SCALE_FACTOR;
 /// Step of the scale models.
-const SCALE_RATE: f64 = 0.02;
+const SCALE_RATE: f32 = 0.02;
 /// Step of the experts' weights, and the least weight.
-const TRUST_RATE: f64 = 0.02;
-const LEAST_TRUST: f64 = 0.02;
+const TRUST_RATE: f32 = 0.02;
+const LEAST_TRUST: f32 = 0.02;
 const TRUST_LEVELS: usize = 16;
 /// Steepest slope of the surface over the two axes coded first that is believed.
-const MAX_SLOPE: f64 = 4.0;
+const MAX_SLOPE: f32 = 4.0;
 /// Bound on centres, far outside any grid.
-const MAX_CENTRE: f64 = 1e9;
+const MAX_CENTRE: f32 = 1e9;
 
 /// What is learnt about coordinates; kept from pass to pass.
 pub(crate) struct GuessModels {
     /// Per class: the filter of the coordinates along the surface and of the one across it.
     filters: Vec<[AffineFilter; 2]>,
-    scales: [[ScaleModel; NUM_EXPERTS]; NUM_KINDS],
-    trust: [[[f64; NUM_EXPERTS]; TRUST_LEVELS]; NUM_KINDS],
+    scales: [ScaleModel; NUM_KINDS],
+    trust: [[Lanes; TRUST_LEVELS]; NUM_KINDS],
 }
 
 impl GuessModels {
     pub(crate) fn new() -> Self {
         Self {
             filters: vec![[AffineFilter::new(), AffineFilter::new()]; NUM_CLASSES],
-            scales: [[ScaleModel::new(); NUM_EXPERTS]; NUM_KINDS],
-            trust: [[[1.0 / NUM_EXPERTS as f64; NUM_EXPERTS]; TRUST_LEVELS]; NUM_KINDS],
+            scales: [ScaleModel::new(); NUM_KINDS],
+            trust: [[Lanes::splat(0.25); TRUST_LEVELS]; NUM_KINDS],
         }
     }
 }
 
-/// Linear model of the base-2 logarithm of a residual's size.
+/// Linear models of the base-2 logarithms of the experts' residuals.
 #[derive(Clone, Copy)]
 struct ScaleModel {
-    weights: [f64; NUM_CUES],
+    /// Lane `i` of each cue's weight is for expert `i`.
+    weights: [Lanes; NUM_CUES],
 }
 
 impl ScaleModel {
     const fn new() -> Self {
-        Self { weights: [-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3] }
+        let weights = [-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3];
+        let mut lanes = [Lanes::ZERO; NUM_CUES];
+        let mut i = 0;
+        while i < NUM_CUES {
+            lanes[i] = Lanes::splat(weights[i]);
+            i += 1;
+        }
+        Self { weights: lanes }
     }
 
-    fn predict(&self, cues: &[f64; NUM_CUES]) -> f64 {
-        let p: [f64; NUM_CUES] = std::array::from_fn(|i| self.weights[i] * cues[i]);
+    #[inline(always)]
+    fn predict(&self, cues: &[Lanes; NUM_CUES]) -> Lanes {
+        let p: [Lanes; NUM_CUES] = std::array::from_fn(|i| self.weights[i] * cues[i]);
         (((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + p[6])).clamp(-4.0, 32.0)
     }
 
-    fn learn(&mut self, cues: &[f64; NUM_CUES], predicted: f64, truth: f64) {
+    #[inline(always)]
+    fn learn(&mut self, cues: &[Lanes; NUM_CUES], predicted: Lanes, truth: Lanes) {
         let error = (truth - predicted).clamp(-3.0, 3.0);
-        let s: [f64; NUM_CUES] = std::array::from_fn(|i| cues[i] * cues[i]);
-        let energy = 1.0 + (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + s[6]));
-        let step = error * SCALE_RATE / energy;
-        for (weight, cue) in self.weights.iter_mut().zip(cues) {
+        let s: [Lanes; NUM_CUES] = std::array::from_fn(|i| cues[i] * cues[i]);
+        let energy = Lanes::splat(1.0) + (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + s[6]));
+        let step = (error * SCALE_RATE).zip(energy, |s, e| s / e);
+        for (weight, &cue) in self.weights.iter_mut().zip(cues) {
             *weight += step * cue;
         }
     }
 }
 
-/// The guess at one vertex, coordinate after coordinate.
+/// The guess at one vertex, coordinate after coordinate. Lanes are axes.
 pub(crate) struct VertexGuess<'a> {
     surroundings: &'a Surroundings,
-    outlook: Outlook,
     /// Axes in coding order.
     axes: [usize; 3],
-    log_length: f64,
-    /// Logarithms of the sizes that the neighbours' residuals suggest: ring and tips, each along and
-    /// across the surface.
-    by_neighbours: [[f64; 2]; 2],
+    /// Slopes of the surface over the axes coded first; 0 for the last one.
+    slopes: Lanes,
+    mean: Lanes,
+    features: [Lanes; NUM_FEATURES],
+    /// Centres of the experts.
+    affine: Lanes,
+    agreed: Consensus,
+    length: f32,
+    log_length: f32,
+    /// Logarithms of the sizes that the neighbours' residuals suggest: ring along and across the
+    /// surface, tips along and across.
+    by_neighbours: Lanes,
+    by_lean: Lanes,
+    by_spread: Lanes,
+    by_width: Lanes,
     /// Coordinates known so far, and their distance from the first expert's centre.
-    position: Vec3,
-    errors: Vec3,
+    position: Lanes,
+    errors: [f32; 3],
 }
 
-/// The guess at one coordinate.
+/// The guess at one coordinate. Lanes are experts.
 pub(crate) struct CoordinateGuess {
     pub(crate) axis: usize,
-    pub(crate) experts: [Expert; NUM_EXPERTS],
+    /// Seen from the origin of the surroundings.
+    pub(crate) mixture: Mixture,
     /// The expert with the highest peak, and the logarithm of its scale.
     pub(crate) best: usize,
-    pub(crate) log_scale: f64,
+    pub(crate) log_scale: f32,
     /// Logarithms of lengths that contexts may use: expected size by the residuals of the ring, of
     /// the outer vertices, by the coordinates already known, and disagreement of the guesses.
-    pub(crate) by_ring: f64,
-    pub(crate) by_tips: f64,
-    pub(crate) by_known: f64,
-    pub(crate) by_spread: f64,
+    pub(crate) by_ring: f32,
+    pub(crate) by_tips: f32,
+    pub(crate) by_known: f32,
+    pub(crate) by_spread: f32,
     /// True if the affine correction points down the axis.
     pub(crate) leans_down: bool,
-    kind: usize,
-    direction: Direction,
-    /// Contribution of the coordinates already known along `direction`.
-    known: f64,
-    cues: [[f64; NUM_CUES]; NUM_EXPERTS],
-    log_scales: [f64; NUM_EXPERTS],
+    /// Contribution of the coordinates already known to the centres.
+    known: f32,
+    cues: [Lanes; NUM_CUES],
+    log_scales: Lanes,
     trust_level: usize,
 }
 
 impl<'a> VertexGuess<'a> {
-    pub(crate) fn new(surroundings: &'a Surroundings) -> Self {
-        let outlook = surroundings.neighbourhood.outlook();
-        let tables = Tables::get();
-        let size = |roughness: f64| tables.log2(outlook.length * tables.exp2(roughness) + FLOOR);
+    /// Guesses all three coordinates as far as that is possible before one of them is known.
+    #[inline(always)]
+    pub(crate) fn new(models: &GuessModels, surroundings: &'a Surroundings) -> Self {
+        let around = &surroundings.neighbourhood;
+        let Outlook { mean, features, normal, length } = around.outlook();
+        let axes = axis_order(normal);
+        let slopes = slopes(normal, axes);
+        let frame = Frame::new(slopes, axes[ACROSS]);
+        let mean = frame.of(mean);
+        let features = features.map(|f| frame.of(f));
+
+        let [along, across] = &models.filters[surroundings.class()];
+        let (along, across) = (along.weights(), across.weights());
+        let mut affine = mean;
+        for i in 0..NUM_FEATURES {
+            let mut weight = Lanes::splat(along[i]);
+            weight.0[axes[ACROSS]] = across[i];
+            affine += weight * features[i];
+        }
+        let mut guesses = Guesses::new();
+        guesses.insert(affine);
+        let degree = around.ring.len();
+        if around.is_closed && degree % 2 == 0 && degree <= MAX_GUESSES {
+            let (first, second) = around.ring.split_at(degree / 2);
+            for (&p, &q) in first.iter().zip(second) {
+                guesses.insert(frame.of((p + q) * 0.5));
+            }
+        }
+        for &p in around.parallelograms.iter().take(MAX_GUESSES) {
+            guesses.insert(frame.of(p));
+        }
+        let agreed = guesses.consensus();
+
+        let logs = |x: Lanes| (x + Lanes::splat(FLOOR)).map(log2);
         Self {
-            by_neighbours: [surroundings.ring_roughness.map(size), surroundings.tip_roughness.map(size)],
             surroundings,
-            axes: axis_order(outlook.normal),
-            log_length: tables.log2(outlook.length),
-            outlook,
-            position: [0.0; 3],
+            axes,
+            slopes,
+            mean,
+            features,
+            affine,
+            agreed,
+            length,
+            log_length: log2(length),
+            by_neighbours: logs(surroundings.roughness.map(exp2) * length),
+            by_lean: logs(features[0].abs() + features[1].abs()),
+            by_spread: logs(agreed.spread),
+            by_width: logs(agreed.width),
+            position: Lanes::ZERO,
             errors: [0.0; 3],
         }
     }
@@ -132,51 +190,49 @@ impl<'a> VertexGuess<'a> {
     /// Guesses the coordinate of `kind`; those before it have been [settled](Self::settle).
     #[inline(always)]
     pub(crate) fn coordinate(&self, models: &GuessModels, kind: usize) -> CoordinateGuess {
-        let tables = Tables::get();
         let axis = self.axes[kind];
-        let (direction, known) = self.direction(kind);
-        let across = usize::from(kind == ACROSS);
-        let filter = &models.filters[self.surroundings.class()][across];
-        let affine = filter.predict(&self.outlook, direction);
-        let agreed = consensus(&self.surroundings.neighbourhood, direction, affine);
-
-        let [by_ring, by_tips] = self.by_neighbours.map(|by| by[across]);
-        let lean = self.outlook.features[0][axis];
-        let by_lean = tables.log2(lean.abs() + self.outlook.features[1][axis].abs() + FLOOR);
-        let by_known = tables.log2(self.errors[0].abs() + self.errors[1].abs() + FLOOR);
-        let by_spread = tables.log2(agreed.spread + FLOOR);
-        let by_width = tables.log2(agreed.width + FLOOR);
-        let cues = [by_spread, by_spread, by_width].map(|by| {
-            [1.0, self.log_length, by_ring, by_tips, by_lean, if kind == 0 { 0.0 } else { by_known }, by]
-        });
-
-        let log_scales: [f64; NUM_EXPERTS] =
-            std::array::from_fn(|i| models.scales[kind][i].predict(&cues[i]));
+        let known = if kind == ACROSS { self.slopes.dot3(self.position) } else { 0.0 };
+        let [ring_along, ring_across, tips_along, tips_across] = self.by_neighbours.0;
+        let (by_ring, by_tips) =
+            if kind == ACROSS { (ring_across, tips_across) } else { (ring_along, tips_along) };
+        let by_known = match kind {
+            0 => 0.0,
+            _ => log2(self.errors[0].abs() + self.errors[1].abs() + FLOOR),
+        };
+        let (by_spread, by_width) = (self.by_spread.0[axis], self.by_width.0[axis]);
+        let cues = [
+            Lanes::splat(1.0),
+            Lanes::splat(self.log_length),
+            Lanes::splat(by_ring),
+            Lanes::splat(by_tips),
+            Lanes::splat(self.by_lean.0[axis]),
+            Lanes::splat(by_known),
+            Lanes([by_spread, by_spread, by_width, by_spread]),
+        ];
+        let log_scales = models.scales[kind].predict(&cues);
         let trust_level = log_level(by_spread, 1.0, TRUST_LEVELS);
-        let centres = [affine, agreed.median, agreed.mode];
-        let experts: [Expert; NUM_EXPERTS] = std::array::from_fn(|i| Expert {
-            centre: (centres[i] - known).clamp(-MAX_CENTRE, MAX_CENTRE),
-            scale: tables.exp2(log_scales[i]) * SCALE_FACTOR,
-            weight: models.trust[kind][trust_level][i],
-        });
-        let mut best = 0;
-        for i in 1..NUM_EXPERTS {
-            if experts[i].weight * experts[best].scale > experts[best].weight * experts[i].scale {
-                best = i;
-            }
-        }
+        let centre = Lanes([
+            self.affine.0[axis],
+            self.agreed.median.0[axis],
+            self.agreed.mode.0[axis],
+            self.affine.0[axis],
+        ]);
+        let mixture = Mixture {
+            centre: (centre - Lanes::splat(known)).clamp(-MAX_CENTRE, MAX_CENTRE),
+            sharpness: log_scales.map(|l| exp2(-l)) * SHARPNESS_FACTOR,
+            weight: models.trust[kind][trust_level],
+        };
+        let best = mixture.best();
         CoordinateGuess {
             axis,
-            experts,
+            mixture,
             best,
-            log_scale: log_scales[best],
+            log_scale: log_scales.0[best],
             by_ring,
             by_tips,
-            by_known: if kind == 0 { 0.0 } else { by_known },
+            by_known,
             by_spread,
-            leans_down: lean < 0.0,
-            kind,
-            direction,
+            leans_down: self.features[0].0[axis] < 0.0,
             known,
             cues,
             log_scales,
@@ -184,46 +240,32 @@ impl<'a> VertexGuess<'a> {
         }
     }
 
-    /// Direction along which a coordinate is guessed, and what the known ones contribute to it. The
-    /// last coordinate is guessed along the normal, scaled so that the axis itself counts once: a
-    /// guess that lies elsewhere on the surface is moved along its tangent plane.
-    fn direction(&self, kind: usize) -> (Direction, f64) {
-        let axis = self.axes[kind];
-        let n = self.outlook.normal;
-        if kind != ACROSS || n[axis] == 0.0 {
-            return (Direction::Axis(axis), 0.0);
-        }
-        let mut along = [0.0; 3];
-        along[axis] = 1.0;
-        let mut known = 0.0;
-        for &a in &self.axes[..2] {
-            along[a] = (n[a] / n[axis]).clamp(-MAX_SLOPE, MAX_SLOPE);
-            known += along[a] * self.position[a];
-        }
-        (Direction::Along(along), known)
-    }
-
     /// Learns a coordinate.
     #[inline(always)]
-    pub(crate) fn settle(&mut self, models: &mut GuessModels, guess: &CoordinateGuess, value: i32) {
-        let tables = Tables::get();
-        let truth = f64::from(value);
-        let kind = guess.kind;
+    pub(crate) fn settle(
+        &mut self,
+        models: &mut GuessModels,
+        guess: &CoordinateGuess,
+        kind: usize,
+        value: i32,
+    ) {
+        let axis = guess.axis;
+        let truth = value.wrapping_sub(self.surroundings.origin[axis]) as f32;
         let filter = &mut models.filters[self.surroundings.class()][usize::from(kind == ACROSS)];
-        filter.learn(&self.outlook, guess.direction, truth + guess.known);
-        for i in 0..NUM_EXPERTS {
-            let size = tables.log2((truth - guess.experts[i].centre).abs() + FLOOR);
-            models.scales[kind][i].learn(&guess.cues[i], guess.log_scales[i], size);
-        }
-        let likelihood = guess.experts.map(|e| e.score(truth));
-        let total = (likelihood[0] + likelihood[1]) + likelihood[2];
+        let per_length = 1.0 / self.length;
+        let offset = (truth + guess.known) - self.mean.0[axis];
+        filter.learn(self.features.map(|f| f.0[axis] * per_length), offset * per_length);
+
+        let distance = guess.mixture.centre - Lanes::splat(truth);
+        let sizes = (distance.abs() + Lanes::splat(FLOOR)).map(log2);
+        models.scales[kind].learn(&guess.cues, guess.log_scales, sizes);
+
+        let scores = guess.mixture.scores(truth);
+        let share = scores * (1.0 / scores.sum());
         let trust = &mut models.trust[kind][guess.trust_level];
-        for i in 0..NUM_EXPERTS {
-            let share = likelihood[i] / total;
-            trust[i] = (trust[i] + (share - trust[i]) * TRUST_RATE).max(LEAST_TRUST);
-        }
-        self.position[guess.axis] = truth;
-        self.errors[kind] = truth - guess.experts[0].centre;
+        *trust = (*trust + (share - *trust) * TRUST_RATE).max(Lanes::splat(LEAST_TRUST));
+        self.position.0[axis] = truth;
+        self.errors[kind] = distance.0[0];
     }
 
     /// Sizes of the residuals over the ring's length, as kept per vertex: along and across.
@@ -231,15 +273,16 @@ impl<'a> VertexGuess<'a> {
         let [a, b, across] = self.errors;
         let along = (a * a + b * b).sqrt();
         [along, across.abs()].map(|error| {
-            let log = Tables::get().log2(error + FLOOR) - self.log_length;
+            let log = log2(error + FLOOR) - self.log_length;
             (log * 8.0).clamp(-120.0, 120.0) as i8
         })
     }
 }
 
 /// Axes in coding order: the one closest to the normal last, the other two ascending.
-fn axis_order(normal: Vec3) -> [usize; 3] {
-    let [x, y, z] = normal.map(f64::abs);
+#[inline(always)]
+fn axis_order(normal: Lanes) -> [usize; 3] {
+    let [x, y, z, _] = normal.abs().0;
     if x > y && x > z {
         [1, 2, 0]
     } else if y > z {
@@ -249,7 +292,47 @@ fn axis_order(normal: Vec3) -> [usize; 3] {
     }
 }
 
+/// The last coordinate is guessed along the normal, scaled so that its axis counts once: a guess
+/// that lies elsewhere on the surface is moved along its tangent plane. Returns what the other two
+/// axes count.
+#[inline(always)]
+fn slopes(normal: Lanes, axes: [usize; 3]) -> Lanes {
+    let axis = axes[ACROSS];
+    let n = normal.0[axis];
+    if n == 0.0 {
+        return Lanes::ZERO;
+    }
+    let mut slopes = (normal * (1.0 / n)).clamp(-MAX_SLOPE, MAX_SLOPE);
+    slopes.0[axis] = 0.0;
+    slopes
+}
+
+/// A shear: the coordinate across the surface becomes the place along the scaled normal.
+struct Frame {
+    columns: [Lanes; 3],
+}
+
+impl Frame {
+    #[inline(always)]
+    fn new(slopes: Lanes, across: usize) -> Self {
+        let columns = std::array::from_fn(|axis| {
+            let mut column = Lanes::ZERO;
+            column.0[across] = slopes.0[axis];
+            column.0[axis] = 1.0;
+            column
+        });
+        Self { columns }
+    }
+
+    #[inline(always)]
+    fn of(&self, p: Lanes) -> Lanes {
+        let [x, y, z] = self.columns;
+        (x * p.0[0] + y * p.0[1]) + z * p.0[2]
+    }
+}
+
 /// Buckets of a base-2 logarithm: `per_octave` to the octave, from the floor on.
-pub(crate) fn log_level(log: f64, per_octave: f64, count: usize) -> usize {
-    ((log + 1.5) * per_octave).clamp(0.0, (count - 1) as f64) as usize
+#[inline(always)]
+pub(crate) fn log_level(log: f32, per_octave: f32, count: usize) -> usize {
+    ((log + 1.5) * per_octave).clamp(0.0, (count - 1) as f32) as usize
 }

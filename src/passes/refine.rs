@@ -1,20 +1,19 @@
 //! One more bit of precision for every vertex (`format/SPEC.md`, section 7.5).
 
 use super::GridMesh;
-use super::guess::{GuessModels, NUM_KINDS, VertexGuess};
+use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
 use super::surroundings::{NUM_CLASSES, Surroundings};
 use crate::bitstream::mixer::MixedBit;
-use crate::bitstream::mixture::Mixture;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
 
 /// Buckets of the centre's distance from the boundary between the halves of a cell.
 const OFFSETS: usize = 32;
-const OFFSETS_PER_STEP: f64 = 6.0;
+const OFFSETS_PER_STEP: f32 = 6.0;
 const SCALES: usize = 16;
 const LIMIT: u32 = 250;
 /// Least mass within a cell: a prediction that lies far away says nothing of its halves.
-const LEAST_MASS: f64 = 1e-9;
+const LEAST_MASS: f32 = 1e-6;
 
 /// Adaptive models, kept from pass to pass.
 pub(crate) struct RefineModels {
@@ -42,27 +41,26 @@ pub(crate) fn code<B: BitCoder>(
     mesh.positions.iter_mut().flatten().for_each(|c| *c *= 2);
     for v in 0..mesh.positions.len() {
         surroundings.gather_refined(mesh, v);
-        let mut vertex = VertexGuess::new(&surroundings);
+        let mut vertex = VertexGuess::new(&models.guesses, &surroundings);
         let class = surroundings.class();
         for kind in 0..NUM_KINDS {
             let guess = vertex.coordinate(&models.guesses, kind);
             let low = mesh.positions[v][guess.axis];
-            let middle = f64::from(low) + 0.5;
-            let mixture = Mixture::new(tables, &guess.experts, middle, false);
-            let above_middle = mixture.above(0.0);
-            let (lower, upper) = (mixture.above(-1.0) - above_middle, above_middle - mixture.above(1.0));
-            let bucket = |centre: f64| {
-                ((centre - middle) * OFFSETS_PER_STEP + 0.5 * OFFSETS as f64).clamp(0.0, (OFFSETS - 1) as f64)
-                    as usize
+            let middle = low.wrapping_sub(surroundings.origin[guess.axis]) as f32 + 0.5;
+            let mixture = guess.mixture.seen_from(middle, false);
+            let above_middle = mixture.above(tables, 0.0);
+            let lower = mixture.above(tables, -1.0) - above_middle;
+            let upper = above_middle - mixture.above(tables, 1.0);
+            let bucket = |centre: f32| {
+                (centre * OFFSETS_PER_STEP + 0.5 * OFFSETS as f32).clamp(0.0, (OFFSETS - 1) as f32) as usize
             };
-            let best = bucket(guess.experts[guess.best].centre);
-            let scale = ((guess.log_scale + 3.0) * 2.0).clamp(0.0, (SCALES - 1) as f64) as usize;
-            let spread = ((guess.by_spread + 1.5) * 2.0).clamp(0.0, (SCALES - 1) as f64) as usize;
+            let [first, second, third, _] = mixture.centre.0.map(bucket);
+            let best = bucket(mixture.centre.0[guess.best]);
             let contexts = [
-                best * SCALES + scale,
-                bucket(guess.experts[0].centre) * NUM_CLASSES + class,
-                bucket(guess.experts[1].centre) * NUM_KINDS + kind,
-                bucket(guess.experts[2].centre) * SCALES + spread,
+                best * SCALES + log_level(guess.log_scale + 1.5, 2.0, SCALES),
+                first * NUM_CLASSES + class,
+                second * NUM_KINDS + kind,
+                third * SCALES + log_level(guess.by_spread, 2.0, SCALES),
             ];
             let p_upper = (upper + 0.5 * LEAST_MASS) / (lower + upper + LEAST_MASS);
             let wanted = target.is_some_and(|t| t[v][guess.axis] > low);
@@ -70,7 +68,7 @@ pub(crate) fn code<B: BitCoder>(
             let bit = models.bit.code(coder, tables, contexts, &direct, kind, wanted);
             let value = low + i32::from(bit);
             mesh.positions[v][guess.axis] = value;
-            vertex.settle(&mut models.guesses, &guess, value);
+            vertex.settle(&mut models.guesses, &guess, kind, value);
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::GridMesh;
 use super::patch::Patches;
-use crate::lifting::neighbourhood::{Neighbourhood, Tip};
-use crate::lifting::vec3::from_grid;
+use crate::lifting::lanes::Lanes;
+use crate::lifting::neighbourhood::Neighbourhood;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 
 /// Classes of vertices that have filters each: by valence from 3 to 8 and more, and open rings.
@@ -16,16 +16,27 @@ const MAX_REFINED_RING: usize = 32;
 #[derive(Default)]
 pub(crate) struct Surroundings {
     pub(crate) neighbourhood: Neighbourhood,
+    /// Cell of the first neighbour; points are relative to it.
+    pub(crate) origin: [i32; 3],
     corners: Vec<u32>,
-    /// Mean base-2 logarithm of residual over edge length in the ring: along and across the surface.
-    pub(crate) ring_roughness: [f64; 2],
-    /// The same over the outer vertices of this level; when refining, of the vertex itself.
-    pub(crate) tip_roughness: [f64; 2],
+    /// Base-2 logarithms of residual over edge length: mean of the ring along and across the
+    /// surface; mean of the outer vertices of this level (when refining, of the vertex itself), too.
+    pub(crate) roughness: Lanes,
+}
+
+/// The vertex across a ring edge.
+enum Tip {
+    /// The edge lies on the boundary.
+    None,
+    /// The true third vertex of the triangle outside.
+    Fine(u32),
+    /// That vertex is not known yet; this is the one that stood there in the coarse mesh.
+    Coarse(u32),
 }
 
 impl Surroundings {
     pub(crate) fn class(&self) -> usize {
-        if self.neighbourhood.is_closed() {
+        if self.neighbourhood.is_closed {
             self.neighbourhood.ring.len().clamp(3, 8) - 3
         } else {
             OPEN_CLASS
@@ -37,65 +48,95 @@ impl Surroundings {
         let vertex = mesh.positions.len();
         let first_odd = vertex - patch;
         let coarse_tips = patches.coarse_tips(patch);
-        let first_edge = patches.first_edge(patch);
-        let at = |v: u32| from_grid(mesh.positions[v as usize]);
+        let mut edge = patches.first_edge(patch);
         let mut tips = RoughnessMean::default();
-        self.gather(mesh, vertex, usize::MAX, at, |i, tip| {
-            if (tip as usize) < vertex {
+        let ring = self.gather(mesh, vertex, usize::MAX, |_| 0.0, |tip| {
+            let coarse = coarse_tips[if edge < coarse_tips.len() { edge } else { edge - coarse_tips.len() }];
+            edge += 1;
+            if tip == NO_CORNER {
+                Tip::None
+            } else if (tip as usize) < vertex {
                 if tip as usize >= first_odd {
                     tips.add(mesh, tip);
                 }
-                return Tip::Fine(at(tip));
-            }
-            match coarse_tips[(first_edge + i) % coarse_tips.len()] {
-                NO_CORNER => Tip::None,
-                coarse => Tip::Coarse(at(coarse)),
+                Tip::Fine(tip)
+            } else if coarse == NO_CORNER {
+                Tip::None
+            } else {
+                Tip::Coarse(coarse)
             }
         });
-        self.tip_roughness = tips.mean().unwrap_or(self.ring_roughness);
+        let tips = tips.mean().unwrap_or(ring);
+        self.roughness = Lanes([ring[0], ring[1], tips[0], tips[1]]);
     }
 
     /// Looks around `vertex` while vertices before it are refined already and the others are not:
     /// those count as lying in the middle of their two cells.
     pub(crate) fn gather_refined(&mut self, mesh: &GridMesh, vertex: usize) {
-        let at = |v: u32| {
-            let p = from_grid(mesh.positions[v as usize]);
-            if (v as usize) < vertex { p } else { p.map(|c| c + 0.5) }
-        };
-        self.gather(mesh, vertex, MAX_REFINED_RING, at, |_, tip| Tip::Fine(at(tip)));
-        self.tip_roughness = mesh.roughness[vertex].map(|r| f64::from(r) / 8.0);
+        let middle = |v: u32| if (v as usize) < vertex { 0.0 } else { 0.5 };
+        let ring = self.gather(mesh, vertex, MAX_REFINED_RING, middle, |tip| {
+            if tip == NO_CORNER { Tip::None } else { Tip::Fine(tip) }
+        });
+        let own = mesh.roughness[vertex].map(|r| f32::from(r) / 8.0);
+        self.roughness = Lanes([ring[0], ring[1], own[0], own[1]]);
     }
 
+    /// Collects the points around `vertex`, `shift` added to each of a vertex's coordinates, and
+    /// returns the roughness of the ring. `tip_of` is asked ring edge by ring edge, with the vertex
+    /// outside or `NO_CORNER`.
+    #[inline(always)]
     fn gather(
         &mut self,
         mesh: &GridMesh,
         vertex: usize,
         most: usize,
-        at: impl Fn(u32) -> [f64; 3],
-        mut tip_at: impl FnMut(usize, u32) -> Tip,
-    ) {
+        shift: impl Fn(u32) -> f32,
+        mut tip_of: impl FnMut(u32) -> Tip,
+    ) -> [f32; 2] {
         let surface = &mesh.surface;
         let mut closed = surface.fan(surface.corner_of[vertex], &mut self.corners);
         if self.corners.len() > most {
             self.corners.truncate(most);
             closed = false;
         }
-        self.neighbourhood.clear();
-        let mut ring = RoughnessMean::default();
-        for (i, &corner) in self.corners.iter().enumerate() {
+        let around = &mut self.neighbourhood;
+        around.clear();
+        around.is_closed = closed;
+        let mut roughness = RoughnessMean::default();
+        let origin = match self.corners.first() {
+            Some(&c) => mesh.positions[surface.vertex(next(c)) as usize],
+            None => [0; 3],
+        };
+        self.origin = origin;
+        let point =
+            |v: u32| Lanes::between(origin, mesh.positions[v as usize]) + Lanes::splat(shift(v));
+        for &corner in &self.corners {
             let v = surface.vertex(next(corner));
-            self.neighbourhood.ring.push(at(v));
-            ring.add(mesh, v);
-            let across = surface.across(corner);
-            let tip = if across == NO_CORNER { Tip::None } else { tip_at(i, surface.vertex(across)) };
-            self.neighbourhood.tips.push(tip);
+            around.ring.push(point(v));
+            roughness.add(mesh, v);
         }
         if !closed && let Some(&last) = self.corners.last() {
             let v = surface.vertex(prev(last));
-            self.neighbourhood.ring.push(at(v));
-            ring.add(mesh, v);
+            around.ring.push(point(v));
+            roughness.add(mesh, v);
         }
-        self.ring_roughness = ring.mean().unwrap_or_default();
+        for (i, &corner) in self.corners.iter().enumerate() {
+            let across = surface.across(corner);
+            let outside = if across == NO_CORNER { NO_CORNER } else { surface.vertex(across) };
+            let over = |tip: u32| {
+                let after = around.ring.get(i + 1).unwrap_or(&around.ring[0]);
+                (around.ring[i] + *after) - point(tip)
+            };
+            match tip_of(outside) {
+                Tip::None => {}
+                Tip::Fine(tip) => {
+                    let parallelogram = over(tip);
+                    around.parallelograms.push(parallelogram);
+                }
+                Tip::Coarse(tip) => around.coarse = (around.coarse.0 + over(tip), around.coarse.1 + 1),
+            }
+        }
+        roughness.mean().unwrap_or_default()
     }
 }
 
@@ -113,7 +154,7 @@ impl RoughnessMean {
         self.count += 1;
     }
 
-    fn mean(&self) -> Option<[f64; 2]> {
-        (self.count > 0).then(|| self.sum.map(|s| f64::from(s) / (8.0 * f64::from(self.count))))
+    fn mean(&self) -> Option<[f32; 2]> {
+        (self.count > 0).then(|| self.sum.map(|s| s as f32 / (8 * self.count) as f32))
     }
 }
