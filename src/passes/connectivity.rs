@@ -6,6 +6,7 @@ use super::{GridMesh, Malformed};
 use crate::bitstream::mixer::{MixedBit, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
+use crate::lifting::lanes::Lanes;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use std::collections::{HashMap, VecDeque};
@@ -53,6 +54,41 @@ impl ConnectivityModels {
     }
 }
 
+/// What is known at a vertex so far.
+#[derive(Clone, Copy, Default)]
+struct Around {
+    /// In the coarse mesh.
+    valence: u32,
+    /// Faces that are not decided yet.
+    undecided: u32,
+    /// What the patches so far will add to the valence.
+    gained: i16,
+    /// Patches that touch the vertex.
+    touched: u8,
+}
+
+impl Around {
+    fn live_valence(self) -> i32 {
+        self.valence as i32 + i32::from(self.gained)
+    }
+
+    /// 0 if a patch touches the vertex; else 1 to 3, the fewer faces are left the higher: a maximal
+    /// set of removed vertices leaves no vertex untouched.
+    fn urgency(self) -> usize {
+        match (self.touched, self.undecided) {
+            (1.., _) => 0,
+            (0, 1) => 3,
+            (0, 2) => 2,
+            _ => 1,
+        }
+    }
+
+    fn touch(&mut self, gained: i16) {
+        self.touched = self.touched.saturating_add(1);
+        self.gained = self.gained.saturating_add(gained);
+    }
+}
+
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Face {
     Undecided = 0,
@@ -85,12 +121,7 @@ struct Walk<'a> {
     count: usize,
     patches: Patches,
     faces: Vec<Face>,
-    /// Patches that touch each vertex so far.
-    touched: Vec<u8>,
-    /// Faces at each vertex that are not decided yet.
-    undecided: Vec<u32>,
-    /// What the patches so far will add to the valence of each vertex.
-    gained: Vec<i16>,
+    around: Vec<Around>,
     gates: VecDeque<u32>,
     /// Edges of the growing patch still to look at.
     frontier: Vec<u32>,
@@ -104,9 +135,9 @@ impl<'a> Walk<'a> {
         target: Option<&'a ConnectivityTarget>,
     ) -> Self {
         let surface = &mesh.surface;
-        let num_vertices = surface.corner_of.len();
-        let mut undecided = vec![0; num_vertices];
-        surface.triangles.iter().flatten().for_each(|&v| undecided[v as usize] += 1);
+        let at = |&valence: &u32| Around { valence, ..Around::default() };
+        let mut around: Vec<Around> = surface.valence.iter().map(at).collect();
+        surface.triangles.iter().flatten().for_each(|&v| around[v as usize].undecided += 1);
         Self {
             surface,
             positions: &mesh.positions,
@@ -115,9 +146,7 @@ impl<'a> Walk<'a> {
             count,
             patches: Patches::default(),
             faces: vec![Face::Undecided; surface.triangles.len()],
-            touched: vec![0; num_vertices],
-            undecided,
-            gained: vec![0; num_vertices],
+            around,
             gates: VecDeque::new(),
             frontier: Vec::new(),
         }
@@ -130,16 +159,13 @@ impl<'a> Walk<'a> {
                 continue;
             }
             let ends = [next(corner), prev(corner)].map(|c| self.surface.vertex(c) as usize);
-            let context = ends.iter().filter(|&&v| self.touched[v] > 0).count();
+            let context = ends.iter().filter(|&&v| self.around[v].touched > 0).count();
             let wanted = self.target.is_some_and(|t| t.ear_at.contains_key(&corner));
             if self.models.ear.code(coder, context, wanted) {
                 self.check_room()?;
                 self.patches.push_edge(self.surface, corner);
                 self.patches.finish(0);
-                for v in ends {
-                    self.touched[v] = self.touched[v].saturating_add(1);
-                    self.gained[v] = self.gained[v].saturating_add(1);
-                }
+                ends.iter().for_each(|&v| self.around[v].touch(1));
             }
         }
         Ok(())
@@ -207,7 +233,7 @@ impl<'a> Walk<'a> {
     fn mark(&mut self, face: u32, state: Face) {
         self.faces[face as usize] = state;
         for v in self.surface.triangles[face as usize] {
-            self.undecided[v as usize] -= 1;
+            self.around[v as usize].undecided -= 1;
         }
     }
 
@@ -215,7 +241,7 @@ impl<'a> Walk<'a> {
         self.mark(face, Face::InPatch);
         self.patches.push_face(face);
         for v in self.surface.triangles[face as usize] {
-            let gained = &mut self.gained[v as usize];
+            let gained = &mut self.around[v as usize].gained;
             *gained = gained.saturating_sub(1);
         }
     }
@@ -248,28 +274,12 @@ impl<'a> Walk<'a> {
         for (i, &corner) in edges.iter().enumerate() {
             self.gates.push_back(corner);
             let v = self.surface.vertex(next(corner)) as usize;
-            self.touched[v] = self.touched[v].saturating_add(1);
             let is_end =
                 open_edge != CLOSED && (i as u32 == open_edge || i == (open_edge as usize + 1) % degree);
-            self.gained[v] = self.gained[v].saturating_add(if is_end { 1 } else { 2 });
+            self.around[v].touch(if is_end { 1 } else { 2 });
         }
         self.patches.finish(open_edge);
         Ok(())
-    }
-
-    fn live_valence(&self, v: usize) -> i32 {
-        self.surface.valence[v] as i32 + i32::from(self.gained[v])
-    }
-
-    /// 0 if a patch touches `v`; else 1 to 3, the fewer faces are left the higher: a maximal set of
-    /// removed vertices leaves no vertex untouched.
-    fn urgency(&self, v: usize) -> usize {
-        match (self.touched[v], self.undecided[v]) {
-            (1.., _) => 0,
-            (0, 1) => 3,
-            (0, 2) => 2,
-            _ => 1,
-        }
     }
 
     fn state_across(&self, corner: u32) -> usize {
@@ -283,10 +293,11 @@ impl<'a> Walk<'a> {
         let [a, b, tip] = [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c) as usize);
         let source = if is_seed { 2 } else { self.state_across(corner).saturating_sub(1).min(1) };
         let around = self.state_across(next(corner)) * 4 + self.state_across(prev(corner));
-        let urgency = [a, b, tip].map(|v| self.urgency(v));
-        let touched = [a, b, tip].iter().fold(0, |t, &v| t * 3 + usize::from(self.touched[v].min(2)));
-        let live = [a, b, tip].iter().fold(0, |t, &v| t * 8 + bucket(self.live_valence(v), 3));
-        let coarse = [a, b, tip].iter().fold(0, |t, &v| t * 8 + bucket(self.surface.valence[v] as i32, 3));
+        let ends = [a, b, tip].map(|v| self.around[v]);
+        let urgency = ends.map(Around::urgency);
+        let touched = ends.iter().fold(0, |t, e| t * 3 + usize::from(e.touched.min(2)));
+        let live = ends.iter().fold(0, |t, e| t * 8 + bucket(e.live_valence(), 3));
+        let coarse = ends.iter().fold(0, |t, e| t * 8 + bucket(e.valence as i32, 3));
 
         let [pa, pb, pt] = [a, b, tip].map(|v| self.positions[v]);
         let gate = squared_distance(pa, pb);
@@ -312,9 +323,9 @@ impl<'a> Walk<'a> {
         let size = faces.len().min(MAX_SIZE) - 1;
         let [a, b, tip, far] =
             [next(inside), prev(inside), inside, beyond].map(|c| self.surface.vertex(c) as usize);
-        let [va, vb, vt, vf] = [a, b, tip, far].map(|v| self.live_valence(v));
+        let [va, vb, vt, vf] = [a, b, tip, far].map(|v| self.around[v].live_valence());
         let pair = |x: i32, y: i32| bucket(x, 2) * 8 + bucket(y, 2);
-        let urgency = self.urgency(far);
+        let urgency = self.around[far].urgency();
 
         let [pa, pb, pt, pf] = [a, b, tip, far].map(|v| self.positions[v]);
         let edge = squared_distance(pa, pb);
@@ -335,33 +346,25 @@ fn bucket(value: i32, first: i32) -> usize {
     (value - first).clamp(0, 7) as usize
 }
 
-fn difference(p: [i32; 3], q: [i32; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| f64::from(p[i]) - f64::from(q[i]))
-}
-
-fn dot(p: [f64; 3], q: [f64; 3]) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-fn squared_distance(p: [i32; 3], q: [i32; 3]) -> f64 {
-    let d = difference(p, q);
-    dot(d, d)
+fn squared_distance(p: [i32; 3], q: [i32; 3]) -> f32 {
+    let d = Lanes::between(p, q);
+    d.dot3(d)
 }
 
 /// x / (x + y) in `levels` equal steps; the middle if both vanish.
-fn share(x: f64, y: f64, levels: usize) -> usize {
+fn share(x: f32, y: f32, levels: usize) -> usize {
     let sum = x + y;
-    if sum > 0.0 { ((x / sum * levels as f64) as usize).min(levels - 1) } else { levels / 2 }
+    if sum > 0.0 { ((x / sum * levels as f32) as usize).min(levels - 1) } else { levels / 2 }
 }
 
 /// Cosine of the angle at `tip` over the edge a–b, 0 if a side vanishes.
-fn cosine(tip: [i32; 3], a: [i32; 3], b: [i32; 3]) -> f64 {
-    let (u, v) = (difference(a, tip), difference(b, tip));
-    let length = (dot(u, u) * dot(v, v)).sqrt();
-    if length > 0.0 { dot(u, v) / length } else { 0.0 }
+fn cosine(tip: [i32; 3], a: [i32; 3], b: [i32; 3]) -> f32 {
+    let (u, v) = (Lanes::between(tip, a), Lanes::between(tip, b));
+    let length = (u.dot3(u) * v.dot3(v)).sqrt();
+    if length > 0.0 { u.dot3(v) / length } else { 0.0 }
 }
 
 /// A cosine in `count` equal steps, the sharpest angle first.
-fn steps(cosine: f64, count: usize) -> usize {
-    ((1.0 - cosine) * 0.5 * count as f64).clamp(0.0, (count - 1) as f64) as usize
+fn steps(cosine: f32, count: usize) -> usize {
+    ((1.0 - cosine) * 0.5 * count as f32).clamp(0.0, (count - 1) as f32) as usize
 }
