@@ -3,7 +3,7 @@
 use super::tables::Tables;
 use crate::lifting::lanes::Lanes;
 
-/// Experts of a mixture: one per lane.
+/// Experts of a mixture: one per lane. One lane may stay empty, with weight 0.
 pub(crate) const NUM_EXPERTS: usize = 4;
 
 /// Guesses at an integer; lane `i` is what expert `i` says.

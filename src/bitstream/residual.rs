@@ -196,8 +196,8 @@ fn round_half_up(x: f32) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lifting::lanes::Lanes;
     use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
+    use crate::lifting::lanes::Lanes;
 
     fn expectation(origin: i32, centre: f32, scale: f32) -> Expectation {
         let mixture = Mixture {

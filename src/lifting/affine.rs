@@ -61,8 +61,12 @@ impl AffineFilter {
     fn is_sound(&self) -> bool {
         let [a, b, c] = self.weights;
         let [xx, _, _, yy, _, zz] = self.covariance;
-        (a.abs() < MAX_WEIGHT) & (b.abs() < MAX_WEIGHT) & (c.abs() < MAX_WEIGHT)
-            & (xx > 0.0) & (yy > 0.0) & (zz > 0.0)
+        (a.abs() < MAX_WEIGHT)
+            & (b.abs() < MAX_WEIGHT)
+            & (c.abs() < MAX_WEIGHT)
+            & (xx > 0.0)
+            & (yy > 0.0)
+            & (zz > 0.0)
     }
 }
 

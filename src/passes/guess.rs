@@ -21,9 +21,10 @@ const SCALE_FACTOR: f32 = 0.85;
 const SHARPNESS_FACTOR: f32 = 1.0 / SCALE_FACTOR;
 /// Step of the scale models.
 const SCALE_RATE: f32 = 0.02;
-/// Step of the experts' weights, and the least weight.
+/// Step of the experts' weights, where they start and the least they get. The fourth lane is empty.
 const TRUST_RATE: f32 = 0.02;
-const LEAST_TRUST: f32 = 0.02;
+const FIRST_TRUST: Lanes = Lanes([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.0]);
+const LEAST_TRUST: Lanes = Lanes([0.02, 0.02, 0.02, 0.0]);
 const TRUST_LEVELS: usize = 16;
 /// Steepest slope of the surface over the two axes coded first that is believed.
 const MAX_SLOPE: f32 = 4.0;
@@ -43,7 +44,7 @@ impl GuessModels {
         Self {
             filters: vec![[AffineFilter::new(), AffineFilter::new()]; NUM_CLASSES],
             scales: [ScaleModel::new(); NUM_KINDS],
-            trust: [[Lanes::splat(0.25); TRUST_LEVELS]; NUM_KINDS],
+            trust: [[FIRST_TRUST; TRUST_LEVELS]; NUM_KINDS],
         }
     }
 }
@@ -207,16 +208,12 @@ impl<'a> VertexGuess<'a> {
             Lanes::splat(by_tips),
             Lanes::splat(self.by_lean.0[axis]),
             Lanes::splat(by_known),
-            Lanes([by_spread, by_spread, by_width, by_spread]),
+            Lanes([by_spread, by_spread, by_width, 0.0]),
         ];
         let log_scales = models.scales[kind].predict(&cues);
         let trust_level = log_level(by_spread, 1.0, TRUST_LEVELS);
-        let centre = Lanes([
-            self.affine.0[axis],
-            self.agreed.median.0[axis],
-            self.agreed.mode.0[axis],
-            self.affine.0[axis],
-        ]);
+        let [median, mode] = [self.agreed.median, self.agreed.mode].map(|l| l.0[axis]);
+        let centre = Lanes([self.affine.0[axis], median, mode, 0.0]);
         let mixture = Mixture {
             centre: (centre - Lanes::splat(known)).clamp(-MAX_CENTRE, MAX_CENTRE),
             sharpness: log_scales.map(|l| exp2(-l)) * SHARPNESS_FACTOR,
@@ -263,7 +260,7 @@ impl<'a> VertexGuess<'a> {
         let scores = guess.mixture.scores(truth);
         let share = scores * (1.0 / scores.sum());
         let trust = &mut models.trust[kind][guess.trust_level];
-        *trust = (*trust + (share - *trust) * TRUST_RATE).max(Lanes::splat(LEAST_TRUST));
+        *trust = (*trust + (share - *trust) * TRUST_RATE).max(LEAST_TRUST);
         self.position.0[axis] = truth;
         self.errors[kind] = distance.0[0];
     }

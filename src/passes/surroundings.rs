@@ -36,11 +36,7 @@ enum Tip {
 
 impl Surroundings {
     pub(crate) fn class(&self) -> usize {
-        if self.neighbourhood.is_closed {
-            self.neighbourhood.ring.len().clamp(3, 8) - 3
-        } else {
-            OPEN_CLASS
-        }
+        if self.neighbourhood.is_closed { self.neighbourhood.ring.len().clamp(3, 8) - 3 } else { OPEN_CLASS }
     }
 
     /// Looks around the vertex that `patch` brought back, the next one without a position.
@@ -50,22 +46,29 @@ impl Surroundings {
         let coarse_tips = patches.coarse_tips(patch);
         let mut edge = patches.first_edge(patch);
         let mut tips = RoughnessMean::default();
-        let ring = self.gather(mesh, vertex, usize::MAX, |_| 0.0, |tip| {
-            let coarse = coarse_tips[if edge < coarse_tips.len() { edge } else { edge - coarse_tips.len() }];
-            edge += 1;
-            if tip == NO_CORNER {
-                Tip::None
-            } else if (tip as usize) < vertex {
-                if tip as usize >= first_odd {
-                    tips.add(mesh, tip);
+        let ring = self.gather(
+            mesh,
+            vertex,
+            usize::MAX,
+            |_| 0.0,
+            |tip| {
+                let coarse =
+                    coarse_tips[if edge < coarse_tips.len() { edge } else { edge - coarse_tips.len() }];
+                edge += 1;
+                if tip == NO_CORNER {
+                    Tip::None
+                } else if (tip as usize) < vertex {
+                    if tip as usize >= first_odd {
+                        tips.add(mesh, tip);
+                    }
+                    Tip::Fine(tip)
+                } else if coarse == NO_CORNER {
+                    Tip::None
+                } else {
+                    Tip::Coarse(coarse)
                 }
-                Tip::Fine(tip)
-            } else if coarse == NO_CORNER {
-                Tip::None
-            } else {
-                Tip::Coarse(coarse)
-            }
-        });
+            },
+        );
         let tips = tips.mean().unwrap_or(ring);
         self.roughness = Lanes([ring[0], ring[1], tips[0], tips[1]]);
     }
@@ -108,8 +111,7 @@ impl Surroundings {
             None => [0; 3],
         };
         self.origin = origin;
-        let point =
-            |v: u32| Lanes::between(origin, mesh.positions[v as usize]) + Lanes::splat(shift(v));
+        let point = |v: u32| Lanes::between(origin, mesh.positions[v as usize]) + Lanes::splat(shift(v));
         for &corner in &self.corners {
             let v = surface.vertex(next(corner));
             around.ring.push(point(v));
