@@ -64,7 +64,52 @@ class Reader:
 
 def f32(x, single=struct.Struct("f")):
     """Rounds to binary32. One operation in binary64, rounded so, is that operation in binary32."""
-    return single.unpack(single.pack(x))[0]
+    try:
+        return single.unpack(single.pack(x))[0]
+    except OverflowError:
+        return math.copysign(math.inf, x)
+
+
+class Single(float):
+    """A binary32 number: what a sum, product or quotient with one gives is rounded to one."""
+
+    __slots__ = ()
+
+    def __new__(cls, x):
+        return float.__new__(cls, f32(x))
+
+    def __add__(self, other):
+        return Single(float(self) + f32(other))
+
+    def __sub__(self, other):
+        return Single(float(self) - f32(other))
+
+    def __rsub__(self, other):
+        return Single(f32(other) - float(self))
+
+    def __mul__(self, other):
+        return Single(float(self) * f32(other))
+
+    def __truediv__(self, other):
+        return Single(quotient(float(self), f32(other)))
+
+    def __rtruediv__(self, other):
+        return Single(quotient(f32(other), float(self)))
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __neg__(self):
+        return Single(-float(self))
+
+    def __abs__(self):
+        return Single(abs(float(self)))
+
+
+ZERO, ONE = Single(0), Single(1)
+
+
+def root(x):
+    return Single(math.sqrt(x))
 
 
 def index(x, n):
@@ -103,8 +148,8 @@ def cross(a, b):
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-def real(cell):
-    return (float(cell[0]), float(cell[1]), float(cell[2]))
+def way(p, q):
+    return (Single(q[0] - p[0]), Single(q[1] - p[1]), Single(q[2] - p[2]))
 
 
 # 5 Passes and levels: the mesh
@@ -248,12 +293,17 @@ SQUASH = [
     int(clamp(int(65536 / (1 + series_exp(-((i + 0.5) * (24 / 4096) - 12)))), 24, 65512)) for i in range(4096)
 ]
 STRETCH = [f32(series_ln(p / (1 - p))) for p in ((i + 0.5) / 4096 for i in range(4096))]
+
+
+def tail_share(s):
+    return 0.75 * logistic(s / 8 / 0.8) + (1 - 0.75) * logistic(s / 8 / 2.4)
+
+
 TAIL = [
-    f32(0.75 * logistic(z / 0.8) + (1 - 0.75) * logistic(z / 2.4)) for z in (i / 16 - 40 for i in range(1282))
+    (Single(tail_share(s)), Single(0.5 * (tail_share(s + 1) - tail_share(s - 1)))) for s in range(-320, 321)
 ]
-LOG = [series_ln(1 + (i + 0.5) / 256) / series_ln(2.0) for i in range(256)]
-EXP = [series_exp((i + 0.5) / 256 * series_ln(2.0)) for i in range(256)]
-assert zlib.crc32(struct.pack("<4096H4096f1282f512d", *SQUASH, *STRETCH, *TAIL, *LOG, *EXP)) == 0x1BF8A372
+FLAT_TAIL = [number for pair in TAIL for number in pair]
+assert zlib.crc32(struct.pack("<4096H4096f1282f", *SQUASH, *STRETCH, *FLAT_TAIL)) == 0xA84B1B07
 
 SQUASH_STEPS = f32(4096 / 24)
 
@@ -267,19 +317,23 @@ def stretch(p):
 
 
 def tail(z):
-    t = (clamp(z, -40.0, 40.0) + 40) * 16
-    i = int(t)
-    return TAIL[i] + (TAIL[i + 1] - TAIL[i]) * (t - i)
+    t = Single(clamp(z, -40.0, 40.0)) * 8
+    i = round(t)
+    value, slope = TAIL[i + 320]
+    return value + slope * (t - i)
 
 
 def log2(x):
     m, e = math.frexp(x)
-    return (e - 1) + LOG[int((2 * m - 1) * 256)]
+    t = Single(2 * m - 1)
+    return ((e - 1) + t) + (t * (1 - t)) * (0.4387257 + t * (-0.2390581 + t * 0.0821306))
 
 
 def exp2(y):
-    i = int((clamp(y, -60.0, 60.0) + 64) * 256)
-    return math.ldexp(EXP[i % 256], i // 256 - 64)
+    y = Single(clamp(y, -60.0, 60.0))
+    i = round(y)
+    f = y - i
+    return (0.99992804 + f * (0.693261 + f * (0.24261164 + f * 0.05517157))) * 2.0**i
 
 
 # 6.3 Counters and mixers
@@ -338,29 +392,25 @@ class Mixed:
 
 # 6.4 Mixtures and residuals
 
-Expert = collections.namedtuple("Expert", "centre scale weight")
+Mixture = collections.namedtuple("Mixture", "centre sharpness weight")
 
 
-class Mixture:
-    def __init__(self, experts, origin, mirrored):
-        centres = [e.centre - origin for e in experts]
-        self.centres = [-c for c in centres] if mirrored else centres
-        self.steps = [1 / e.scale for e in experts]
-        self.weights = [e.weight for e in experts]
+def seen_from(mixture, origin, mirrored):
+    centre = [c - origin for c in mixture.centre]
+    return mixture._replace(centre=[-c for c in centre] if mirrored else centre)
 
-    def flip(self):
-        self.centres = [-c for c in self.centres]
 
-    def total(self):
-        return (self.weights[0] + self.weights[1]) + self.weights[2]
+def above(mixture, x):
+    return total(w * tail((x - c) * s) for c, s, w in zip(*mixture))
 
-    def above(self, x):
-        t = [w * tail((x - c) * s) for w, c, s in zip(self.weights, self.centres, self.steps)]
-        return (t[0] + t[1]) + t[2]
 
-    def below(self, x):
-        t = [w * tail((c - x) * s) for w, c, s in zip(self.weights, self.centres, self.steps)]
-        return (t[0] + t[1]) + t[2]
+def below(mixture, x):
+    return total(w * tail((c - x) * s) for c, s, w in zip(*mixture))
+
+
+def total(three):
+    a, b, c = three
+    return (a + b) + c
 
 
 class Residuals:
@@ -370,51 +420,49 @@ class Residuals:
         self.more = Mixed(3, 0.4, 250)
         self.mantissa = Mixed(2, 0.6, 250)
 
-    def code(self, coder, experts, best, log_scale, kind, c, s):
-        centre = experts[best].centre
+    def code(self, coder, origin, mixture, best, log_scale, kind, c, s):
+        centre = mixture.centre[best]
         nearest = math.floor(centre + 0.5)
         fraction = centre - nearest
+        base = origin + nearest
         mirrored = fraction < 0
         bucket = index(log_scale * 4 + 12, 64)
         offset = index(abs(fraction) * 16, 8)
         by_scale = kind * 64 + bucket
-        mixture = Mixture(experts, nearest, mirrored)
+        mixture = seen_from(mixture, nearest, mirrored)
 
-        total, up, down = mixture.total(), mixture.above(0.5), mixture.below(-0.5)
+        mass, up, down = total(mixture.weight), above(mixture, 0.5), below(mixture, -0.5)
         contexts = [by_scale * 8 + offset, c[0], c[1]]
-        if self.zero.code(coder, contexts, [stretch(quotient(total - up - down, total))], kind):
-            return nearest
+        if self.zero.code(coder, contexts, [stretch((mass - up - down) / mass)], kind):
+            return base
         contexts = [(by_scale >> 2) * 8 + offset, s ^ mirrored]
-        positive = self.sign.code(coder, contexts, [stretch(quotient(up, up + down))], kind)
-        if not positive:
-            mixture.flip()
+        positive = self.sign.code(coder, contexts, [stretch(up / (up + down))], kind)
+        mixture = seen_from(mixture, 0, not positive)
 
-        e, mass = 0, up if positive else down
+        e, outer = 0, up if positive else down
         while True:
-            beyond = mixture.above((2 << e) - 0.5)
+            beyond = above(mixture, (2 << e) - 0.5)
             contexts = [by_scale * 32 + e, c[0] * 32 + e, c[1] * 32 + e]
-            if not self.more.code(coder, contexts, [stretch(quotient(beyond, mass))], kind * 32 + e):
+            if not self.more.code(coder, contexts, [stretch(beyond / outer)], kind * 32 + e):
                 break
-            mass, e = beyond, e + 1
+            outer, e = beyond, e + 1
             require(e < 32, "a residual is too large")
-        mass = mass - beyond
 
         low = 1 << e
         for d in range(e):
-            half = 1 << (e - 1 - d)
-            middle = low + half
-            upper = mixture.above(middle - 0.5) - mixture.above(middle + half - 0.5)
-            share = quotient(upper, mass)
+            middle = low + (1 << (e - 1 - d))
+            upper = above(mixture, middle - 0.5)
+            share = (upper - beyond) / (outer - beyond)
             if d < 2:
                 contexts = [(32 * d + e) * 64 + bucket, (32 * d + e) * 3 + kind]
                 bit = self.mantissa.code(coder, contexts, [stretch(share)], d)
             else:
                 bit = coder.bit(clamp(index(share * 65536, 1 << 32), 8192, 32768))
             if bit:
-                low, mass = middle, upper
+                low, outer = middle, upper
             else:
-                mass = mass - upper
-        return nearest + low if bool(positive) != mirrored else nearest - low
+                beyond = upper
+        return base + low if bool(positive) != mirrored else base - low
 
 
 # 7.1 Base mesh
@@ -425,7 +473,7 @@ HAS_FACE, IS_NEW, IS_NEW_IN_SEED, IS_RIGHT, IS_LEFT = range(5)
 class Base:
     def __init__(self, coder, num_vertices, num_faces, precision):
         self.coder, self.num_vertices, self.limit = coder, num_vertices, 1 << precision
-        self.size = [self.limit / 8] * 3
+        self.size = [Single(self.limit / 8)] * 3
         self.syntax, self.residuals = Plain(), Residuals()
         self.gates, self.open = collections.deque(), {}
         self.mesh = mesh = Mesh()
@@ -499,15 +547,17 @@ class Base:
 
     def new_vertex(self, kind, guess):
         require(len(self.mesh.cell) < self.num_vertices, "more vertices than announced")
-        cell, total = [], 0.0
+        cell, size = [], ZERO
+        scale = max(self.size[kind], Single(0.3))
+        mixture = Mixture([ZERO] * 3, [1 / scale] * 3, [ONE, ZERO, ZERO])
         for axis in range(3):
-            scale = max(self.size[kind], 0.3)
-            experts = [Expert(float(guess[axis]), scale, 0.4)] * 3
-            x = self.residuals.code(self.coder, experts, 0, log2(scale), kind, (axis, 3), 2 * axis)
+            x = self.residuals.code(
+                self.coder, guess[axis], mixture, 0, log2(scale), kind, (axis, 3), 2 * axis
+            )
             require(0 <= x < self.limit, "a base vertex lies outside the grid")
-            total += abs(x - guess[axis])
+            size += abs(x - guess[axis])
             cell.append(x)
-        self.size[kind] += (total / 3 - self.size[kind]) * 0.2
+        self.size[kind] += (size / 3 - self.size[kind]) * 0.2
         self.mesh.cell.append(cell)
         return len(self.mesh.cell) - 1
 
@@ -649,14 +699,14 @@ class Connectivity:
         return 3 if across == NONE else self.state[across // 3]
 
     def square(self, u, v):
-        w = sub(real(self.mesh.cell[u]), real(self.mesh.cell[v]))
+        w = way(self.mesh.cell[u], self.mesh.cell[v])
         return dot(w, w)
 
     def cos(self, t, u, v):
-        tip = real(self.mesh.cell[t])
-        a, b = sub(real(self.mesh.cell[u]), tip), sub(real(self.mesh.cell[v]), tip)
-        length = math.sqrt(dot(a, a) * dot(b, b))
-        return dot(a, b) / length if length else 0.0
+        cell = self.mesh.cell
+        a, b = way(cell[t], cell[u]), way(cell[t], cell[v])
+        length = root(dot(a, a) * dot(b, b))
+        return dot(a, b) / length if length else ZERO
 
     def face_contexts(self, c, seed):
         mesh = self.mesh
@@ -746,17 +796,30 @@ def restore(mesh, patch):
 
 
 class Neighbourhood:
-    """`tip_of(i, u)` gives the fine and the coarse point of a tip, or None for either."""
+    """`tip_of(i, u)` gives the fine and the coarse vertex of a tip, or NONE for either."""
 
-    def __init__(self, mesh, corners, closed, point, tip_of):
+    def __init__(self, mesh, corners, closed, shift, tip_of):
         self.closed = closed
         vertices = [mesh.vertex(next_(c)) for c in corners]
         if not closed:
             vertices.append(mesh.vertex(prev(corners[-1])))
+        self.origin = mesh.cell[vertices[0]]
+
+        def point(u):
+            p = way(self.origin, mesh.cell[u])
+            return add(p, (0.5, 0.5, 0.5)) if shift(u) else p
+
         self.ring = [point(u) for u in vertices]
-        across = [mesh.across[c] for c in corners]
-        self.tip_vertices = [NONE if c == NONE else mesh.vertex(c) for c in across]
-        self.tips = [(None, None) if u == NONE else tip_of(i, u) for i, u in enumerate(self.tip_vertices)]
+        self.tip_vertices, self.fine, self.coarse = [], [], []
+        for i, c in enumerate(corners):
+            u = NONE if mesh.across[c] == NONE else mesh.vertex(mesh.across[c])
+            self.tip_vertices.append(u)
+            both = add(self.ring[i], self.ring[(i + 1) % len(self.ring)])
+            fine, coarse = (NONE, NONE) if u == NONE else tip_of(i, u)
+            if fine != NONE:
+                self.fine.append(sub(both, point(fine)))
+            elif coarse != NONE:
+                self.coarse.append(sub(both, point(coarse)))
         self.kind = clamp(len(self.ring), 3, 8) - 3 if closed else 6
         self.ring_roughness = mean_roughness(mesh, vertices)
         self.tip_roughness = self.ring_roughness
@@ -764,37 +827,53 @@ class Neighbourhood:
 
     def look(self):
         ring, n = self.ring, len(self.ring)
-        total = (0.0, 0.0, 0.0)
+        share = ONE / n
+        zero = (ZERO, ZERO, ZERO)
+        mean = zero
         for p in ring:
-            total = add(total, p)
-        self.mean = mean = scaled(total, 1 / n)
-        distance, inverse, weights = 0.0, (0.0, 0.0, 0.0), 0.0
+            mean = add(mean, p)
+        mean = scaled(mean, share)
+        distance, inverse, weights, normal = ZERO, zero, ZERO, zero
+        before = sub(ring[-1], mean)
         for p in ring:
             d = sub(p, mean)
-            r = math.sqrt(dot(d, d))
+            r = root(dot(d, d))
             distance += r
             w = 1 / (r + 0.25)
-            weights, inverse = weights + w, add(inverse, scaled(d, w))
-        self.length = max(distance / n, 0.25)
-        self.normal = fine = coarse = (0.0, 0.0, 0.0)
-        for i, p in enumerate(ring):
-            d, e = sub(p, mean), sub(ring[(i + 1) % n], mean)
-            self.normal = add(self.normal, cross(d, e))
-            if i < len(self.tips):
-                fine_tip, coarse_tip = self.tips[i]
-                if fine_tip:
-                    fine = add(fine, sub(add(d, e), sub(fine_tip, mean)))
-                elif coarse_tip:
-                    coarse = add(coarse, sub(add(d, e), sub(coarse_tip, mean)))
+            inverse, weights = add(inverse, scaled(d, w)), weights + w
+            normal, before = add(normal, cross(before, d)), d
+        self.length = max(distance * share, Single(0.25))
+        fine = coarse = zero
+        for p in self.fine:
+            fine = add(fine, sub(p, mean))
+        for p in self.coarse:
+            coarse = add(coarse, p)
+        coarse = sub(coarse, scaled(mean, len(self.coarse)))
         if self.closed:
             ends = scaled(inverse, 1 / weights)
         else:
-            ends = scaled(add(sub(ring[0], mean), sub(ring[-1], mean)), 0.5)
-        self.features = [scaled(fine, 1 / n), scaled(coarse, 1 / n), ends]
+            ends = sub(scaled(add(ring[0], ring[-1]), 0.5), mean)
+
+        x, y, z = (abs(a) for a in normal)
+        self.axes = (1, 2, 0) if x > y and x > z else (0, 2, 1) if y > z else (0, 1, 2)
+        across = self.axes[2]
+        self.slope = [ZERO] * 3
+        if normal[across] != 0:
+            inverse = 1 / normal[across]
+            for a in self.axes[:2]:
+                self.slope[a] = Single(clamp(normal[a] * inverse, -4.0, 4.0))
+        self.mean = self.frame(mean)
+        self.features = [self.frame(f) for f in (scaled(fine, share), scaled(coarse, share), ends)]
+
+    def frame(self, p):
+        across = self.axes[2]
+        u = [ONE if a == across else self.slope[a] for a in range(3)]
+        return tuple(dot(u, p) if a == across else p[a] for a in range(3))
 
 
 def mean_roughness(mesh, vertices):
-    return [sum(mesh.roughness[u][side] for u in vertices) / (8 * len(vertices)) for side in range(2)]
+    sums = (sum(mesh.roughness[u][side] for u in vertices) for side in range(2))
+    return [Single(s) / (8 * len(vertices)) for s in sums]
 
 
 def around_odd(mesh, patch, first):
@@ -802,12 +881,9 @@ def around_odd(mesh, patch, first):
     corners, closed = mesh.fan(mesh.corner_of[v])
 
     def tip_of(i, u):
-        if u < v:
-            return real(mesh.cell[u]), None
-        coarse = patch.tips[(patch.start() + i) % len(patch.tips)]
-        return None, None if coarse == NONE else real(mesh.cell[coarse])
+        return (u, NONE) if u < v else (NONE, patch.tips[(patch.start() + i) % len(patch.tips)])
 
-    around = Neighbourhood(mesh, corners, closed, lambda u: real(mesh.cell[u]), tip_of)
+    around = Neighbourhood(mesh, corners, closed, lambda u: False, tip_of)
     known = [u for u in around.tip_vertices if first <= u < v]
     if known:
         around.tip_roughness = mean_roughness(mesh, known)
@@ -818,13 +894,8 @@ def around_refined(mesh, v):
     corners, closed = mesh.fan(mesh.corner_of[v])
     if len(corners) > 32:
         corners, closed = corners[:32], False
-
-    def point(u):
-        x, y, z = real(mesh.cell[u])
-        return (x, y, z) if u < v else (x + 0.5, y + 0.5, z + 0.5)
-
-    around = Neighbourhood(mesh, corners, closed, point, lambda i, u: (point(u), None))
-    around.tip_roughness = [r / 8 for r in mesh.roughness[v]]
+    around = Neighbourhood(mesh, corners, closed, lambda u: u >= v, lambda i, u: (u, NONE))
+    around.tip_roughness = [Single(r) / 8 for r in mesh.roughness[v]]
     return around
 
 
@@ -840,44 +911,40 @@ class Filter:
         self.start()
 
     def start(self):
-        self.weight = [0.5, 0.35, 0.0]
-        self.c = [[10.0 * (i == j) for j in range(3)] for i in range(3)]
+        self.weight = [Single(0.5), Single(0.35), ZERO]
+        self.c = [[Single(10.0 * (i == j)) for j in range(3)] for i in range(3)]
 
-    def predict(self, around, of):
-        return of(around.mean) + sum3(self.weight, [of(f) for f in around.features])
-
-    def learn(self, around, of, truth):
-        k = 1 / around.length
-        x = [of(f) * k for f in around.features]
+    def learn(self, x, truth):
         y = [sum3(row, x) for row in self.c]
         gain = 1 / (1 + sum3(x, y))
-        error = (truth - of(around.mean)) * k - sum3(self.weight, x)
+        error = truth - sum3(self.weight, x)
+        g = [gain * entry for entry in y]
+        self.weight = [w + entry * error for w, entry in zip(self.weight, g)]
+        grow = ONE / 0.999 if all(self.c[i][i] < 1e4 for i in range(3)) else ONE
         for i in range(3):
-            self.weight[i] += y[i] * gain * error
-            for j in range(3):
-                self.c[i][j] -= y[i] * y[j] * gain
-        if all(self.c[i][i] < 1e6 for i in range(3)):
-            self.c = [[entry * (1 / 0.999) for entry in row] for row in self.c]
+            for j in range(i, 3):
+                self.c[i][j] = self.c[j][i] = (self.c[i][j] - y[i] * g[j]) * grow
         if not all(abs(self.weight[i]) < 1000 and self.c[i][i] > 0 for i in range(3)):
             self.start()
 
 
-def consensus(around, of, affine):
+def consensus(around, affine):
     n = len(around.ring)
-    ring = [of(p) for p in around.ring]
-    v = [affine]
+    guesses = [affine]
     if around.closed and n % 2 == 0 and n <= 16:
-        v += [0.5 * (ring[i] + ring[i + n // 2]) for i in range(n // 2)]
-    for i, (fine, _) in enumerate(around.tips[:16]):
-        if fine:
-            v.append(ring[i] + ring[min((i + 1) % n, 15)] - of(fine))
-    v = sorted(v[:16])
+        opposite = ((around.ring[i], around.ring[i + n // 2]) for i in range(n // 2))
+        guesses += [around.frame(scaled(add(p, q), 0.5)) for p, q in opposite]
+    guesses += [around.frame(p) for p in around.fine]
+    return [agree(sorted(g[a] for g in guesses[:16])) for a in range(3)]
+
+
+def agree(v):
     m = len(v)
-    median = v[m // 2] if m % 2 else 0.5 * (v[m // 2] + v[m // 2 - 1])
+    median = v[m // 2] if m % 2 else (v[m // 2] + v[m // 2 - 1]) * 0.5
     spread = v[m - 1 - m // 4] - v[m // 4]
     w = 3 if m >= 5 else min(m, 2)
     a = min(range(m - w + 1), key=lambda i: v[i + w - 1] - v[i])
-    mode = v[a + 1] if w == 3 else 0.5 * (v[a] + v[a + w - 1])
+    mode = v[a + 1] if w == 3 else (v[a] + v[a + w - 1]) * 0.5
     return median, spread, mode, v[a + w - 1] - v[a]
 
 
@@ -886,9 +953,10 @@ def consensus(around, of, affine):
 
 class GuessModels:
     def __init__(self):
+        start = [Single(w) for w in (-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3)]
         self.filters = [[Filter(), Filter()] for _ in range(7)]
-        self.scales = [[[-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3] for _ in range(3)] for _ in range(3)]
-        self.trust = [[[1 / 3] * 3 for _ in range(16)] for _ in range(3)]
+        self.scales = [[list(start) for _ in range(3)] for _ in range(3)]
+        self.trust = [[[ONE / 3] * 3 for _ in range(16)] for _ in range(3)]
 
 
 def sum7(a, b):
@@ -903,70 +971,74 @@ def level(x, r, n):
 class VertexGuess:
     def __init__(self, models, around):
         self.models, self.around = models, around
-        x, y, z = (abs(a) for a in around.normal)
-        self.axes = (1, 2, 0) if x > y and x > z else (0, 2, 1) if y > z else (0, 1, 2)
+        self.position, self.errors = [ZERO] * 3, [ZERO] * 3
         self.log_length = log2(around.length)
-        self.position, self.errors = [0.0] * 3, [0.0] * 3
+        along, across = (f.weight for f in models.filters[around.kind])
+        weights = [across if a == around.axes[2] else along for a in range(3)]
+        f = around.features
+        self.affine = [
+            ((around.mean[a] + w[0] * f[0][a]) + w[1] * f[1][a]) + w[2] * f[2][a]
+            for a, w in enumerate(weights)
+        ]
+        self.agreed = consensus(around, self.affine)
 
     def by(self, roughness):
-        return log2(self.around.length * exp2(roughness) + 0.35)
+        return log2(exp2(roughness) * self.around.length + 0.35)
 
     def guess(self, kind):
         around, models = self.around, self.models
-        self.kind, self.axis = kind, self.axes[kind]
-        side = int(kind == 2)
-        axis, normal = self.axis, around.normal
-        self.of, self.known = lambda p: p[axis], 0.0
-        if kind == 2 and normal[axis] != 0:
-            u = [1.0] * 3
-            for a in self.axes[:2]:
-                u[a] = clamp(normal[a] / normal[axis], -4.0, 4.0)
-                self.known += u[a] * self.position[a]
-            self.of = lambda p: dot(p, u)
+        self.kind, self.axis = kind, around.axes[kind]
+        side, axis = int(kind == 2), self.axis
         self.filter = models.filters[around.kind][side]
-        affine = self.filter.predict(around, self.of)
-        median, spread, mode, width = consensus(around, self.of, affine)
+        self.known = dot(around.slope, self.position) if kind == 2 else ZERO
+        median, spread, mode, width = self.agreed[axis]
 
         self.by_ring, self.by_tips = self.by(around.ring_roughness[side]), self.by(around.tip_roughness[side])
         self.lean = around.features[0][axis]
         by_lean = log2(abs(self.lean) + abs(around.features[1][axis]) + 0.35)
-        self.by_known = log2(abs(self.errors[0]) + abs(self.errors[1]) + 0.35) if kind else 0.0
+        self.by_known = log2(abs(self.errors[0]) + abs(self.errors[1]) + 0.35) if kind else ZERO
         self.by_spread, by_width = log2(spread + 0.35), log2(width + 0.35)
-        cue = [1.0, self.log_length, self.by_ring, self.by_tips, by_lean, self.by_known]
+        cue = [ONE, self.log_length, self.by_ring, self.by_tips, by_lean, self.by_known]
         self.cues = [cue + [z] for z in (self.by_spread, self.by_spread, by_width)]
-        self.logs = [clamp(sum7(w, c), -4.0, 32.0) for w, c in zip(models.scales[kind], self.cues)]
+        scales = models.scales[kind]
+        self.logs = [Single(clamp(sum7(w, c), -4.0, 32.0)) for w, c in zip(scales, self.cues)]
         self.trust = models.trust[kind][level(self.by_spread, 1, 16)]
-        self.experts = [
-            Expert(clamp(c - self.known, -1e9, 1e9), exp2(log) * 0.85, weight)
-            for c, log, weight in zip((affine, median, mode), self.logs, self.trust)
-        ]
-        e, best = self.experts, 0
-        for i in (1, 2):
-            if e[i].weight * e[best].scale > e[best].weight * e[i].scale:
-                best = i
-        self.best, self.log_scale = best, self.logs[best]
+        self.mixture = Mixture(
+            [Single(clamp(c - self.known, -1e9, 1e9)) for c in (self.affine[axis], median, mode)],
+            [exp2(-log) * (ONE / 0.85) for log in self.logs],
+            list(self.trust),
+        )
+        peaks = [w * s for _, s, w in zip(*self.mixture)]
+        self.best = peaks.index(max(peaks))
+        self.log_scale = self.logs[self.best]
 
     def learn(self, x):
-        self.filter.learn(self.around, self.of, x + self.known)
-        for e, log, weights, cue in zip(self.experts, self.logs, self.models.scales[self.kind], self.cues):
-            error = clamp(log2(abs(x - e.centre) + 0.35) - log, -3.0, 3.0)
+        around, axis = self.around, self.axis
+        y = Single(x - around.origin[axis])
+        k = 1 / around.length
+        self.filter.learn(
+            [f[axis] * k for f in around.features], ((y + self.known) - around.mean[axis]) * k
+        )
+        distances = [c - y for c in self.mixture.centre]
+        for d, log, weights, cue in zip(distances, self.logs, self.models.scales[self.kind], self.cues):
+            error = Single(clamp(log2(abs(d) + 0.35) - log, -3.0, 3.0))
             step = error * 0.02 / (1 + sum7(cue, cue))
             for j in range(7):
                 weights[j] += step * cue[j]
         score = []
-        for e in self.experts:
-            distance, variance = x - e.centre, e.scale * e.scale
-            r = variance + (1 / 12) + distance * distance
-            score.append(e.weight * e.scale * variance / (r * r))
-        total = (score[0] + score[1]) + score[2]
+        for d, s, w in zip(distances, self.mixture.sharpness, self.mixture.weight):
+            r = 1 + (d * d + ONE / 12) * (s * s)
+            score.append(w * (s / (r * r)))
+        f = 1 / total(score)
         for i in range(3):
-            self.trust[i] = max(self.trust[i] + (score[i] / total - self.trust[i]) * 0.02, 0.02)
-        self.position[self.axis] = float(x)
-        self.errors[self.kind] = x - self.experts[0].centre
+            trust = self.trust[i] + (score[i] * f - self.trust[i]) * 0.02
+            self.trust[i] = trust if trust > Single(0.02) else Single(0.02)
+        self.position[axis] = y
+        self.errors[self.kind] = distances[0]
 
     def roughness(self):
         a, b, across = self.errors
-        errors = math.sqrt(a * a + b * b), abs(across)
+        errors = root(a * a + b * b), abs(across)
         return [int(clamp((log2(error + 0.35) - self.log_length) * 8, -120, 120)) for error in errors]
 
 
@@ -986,7 +1058,8 @@ def decode_coordinates(coder, models, residuals, mesh, patches):
                 (around.kind * 8 + level(g.by_known, 1, 8)) * 4 + level(g.by_spread, 0.5, 4),
             )
             sign = 2 * around.kind + (g.lean < 0)
-            x = residuals.code(coder, g.experts, g.best, g.log_scale, kind, contexts, sign)
+            origin = around.origin[g.axis]
+            x = residuals.code(coder, origin, g.mixture, g.best, g.log_scale, kind, contexts, sign)
             require(0 <= x < 1 << mesh.precision, "a vertex lies outside the grid")
             g.learn(x)
             cell[g.axis] = x
@@ -1006,18 +1079,18 @@ def refine(coder, models, mixed, mesh):
         for kind in range(3):
             g.guess(kind)
             low = cell[g.axis]
-            middle = low + 0.5
-            mixture = Mixture(g.experts, middle, False)
-            m = mixture.above(0.0)
-            lower, upper = mixture.above(-1.0) - m, m - mixture.above(1.0)
-            place = [index((e.centre - middle) * 6 + 16, 32) for e in g.experts]
+            middle = Single(low - around.origin[g.axis]) + 0.5
+            mixture = seen_from(g.mixture, middle, False)
+            m = above(mixture, 0.0)
+            lower, upper = above(mixture, -1.0) - m, m - above(mixture, 1.0)
+            place = [index(c * 6 + 16, 32) for c in mixture.centre]
             contexts = [
-                place[g.best] * 16 + index((g.log_scale + 3) * 2, 16),
+                place[g.best] * 16 + level(g.log_scale + 1.5, 2, 16),
                 place[0] * 7 + around.kind,
                 place[1] * 3 + kind,
-                place[2] * 16 + index((g.by_spread + 1.5) * 2, 16),
+                place[2] * 16 + level(g.by_spread, 2, 16),
             ]
-            p_upper = (upper + 0.5 * 1e-9) / (lower + upper + 1e-9)
+            p_upper = (upper + Single(0.5) * 1e-6) / (lower + upper + 1e-6)
             cell[g.axis] = low + mixed.code(coder, contexts, [stretch(p_upper)], kind)
             g.learn(cell[g.axis])
 

@@ -5,7 +5,7 @@
 use crate::bitstream::bytes::{Reader, write_varint};
 use crate::bitstream::chunk::{self, Frame, kind};
 use crate::bitstream::header::{self, Action, Grid, Pass};
-use crate::bitstream::mixture::{Mixture, NUM_EXPERTS};
+use crate::bitstream::mixture::Mixture;
 use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
 use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
 use crate::descriptors::{Descriptor, Window};
@@ -173,14 +173,14 @@ struct Case {
 impl Case {
     fn from(input: &mut Input) -> Self {
         let mut mixture = Mixture::default();
-        let mut log_scales = [0.0; NUM_EXPERTS];
-        for i in 0..NUM_EXPERTS {
-            log_scales[i] = f32::from(input.u8() % 37) - 4.0;
+        let mut log_scales = [0.0; 4];
+        for (i, log_scale) in log_scales.iter_mut().enumerate() {
+            *log_scale = f32::from(input.u8() % 37) - 4.0;
             mixture.centre.0[i] = (input.u32() as i32 >> (input.u8() % 31)) as f32 / 3.0;
-            mixture.sharpness.0[i] = (-log_scales[i]).exp2();
+            mixture.sharpness.0[i] = (-*log_scale).exp2();
             mixture.weight.0[i] = 0.02 + f32::from(input.u8()) / 256.0;
         }
-        let best = usize::from(input.u8()) % NUM_EXPERTS;
+        let best = usize::from(input.u8()) % log_scales.len();
         let expectation = Expectation {
             origin: (input.u32() as i32) >> (2 + input.u8() % 29),
             mixture,

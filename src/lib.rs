@@ -13,6 +13,7 @@ mod error;
 pub mod fuzzing;
 #[cfg(feature = "io")]
 pub mod io;
+mod lanes;
 mod lifting;
 mod limits;
 pub mod mesh;

@@ -5,18 +5,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 14] = [
+const LAYERS: [(&str, &[&str]); 15] = [
     ("error", &[]),
     ("limits", &["error"]),
-    ("bitstream", &[]),
+    ("lanes", &[]),
+    ("bitstream", &["lanes"]),
     ("mesh", &[]),
     ("io", &["mesh"]),
     ("metrics", &["mesh"]),
     ("descriptors", &["mesh"]),
-    ("lifting", &[]),
+    ("lifting", &["lanes"]),
     ("simplify", &["mesh"]),
     ("partition", &["mesh", "simplify"]),
-    ("passes", &["bitstream", "lifting", "mesh"]),
+    ("passes", &["bitstream", "lanes", "lifting", "mesh"]),
     ("decoder", &["bitstream", "error", "limits", "mesh", "passes"]),
     (
         "encoder",

@@ -1,12 +1,9 @@
 //! Densities of integers: several experts, each a centre and a scale (`format/SPEC.md`, section 6.4).
 
 use super::tables::Tables;
-use crate::lifting::lanes::Lanes;
+use crate::lanes::Lanes;
 
-/// Experts of a mixture: one per lane. One lane may stay empty, with weight 0.
-pub(crate) const NUM_EXPERTS: usize = 4;
-
-/// Guesses at an integer; lane `i` is what expert `i` says.
+/// Guesses at an integer; lane `i` is what expert `i` says. A lane may stay empty, with weight 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Mixture {
     /// Most likely value, within ±2³⁰ of the origin that the integer is counted from.

@@ -197,7 +197,7 @@ fn round_half_up(x: f32) -> i32 {
 mod tests {
     use super::*;
     use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
-    use crate::lifting::lanes::Lanes;
+    use crate::lanes::Lanes;
 
     fn expectation(origin: i32, centre: f32, scale: f32) -> Expectation {
         let mixture = Mixture {

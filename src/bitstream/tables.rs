@@ -3,7 +3,7 @@
 //! The decoder may not call a library's logarithm: its last bits differ between platforms. These
 //! are made of + − × ÷ in a fixed order, tabulated once.
 
-use crate::lifting::lanes::Lanes;
+use crate::lanes::Lanes;
 use std::sync::LazyLock;
 
 /// Entries of the logistic table over [−12, 12).
@@ -113,7 +113,7 @@ pub(crate) fn log2(x: f32) -> f32 {
 /// Two to the power `y`, `y` within −60..60, to about 0.01 %.
 #[inline(always)]
 pub(crate) fn exp2(y: f32) -> f32 {
-    const C: [f32; 4] = [0.999_928_04, 0.693_261_04, 0.242_611_64, 0.055_171_57];
+    const C: [f32; 4] = [0.999_928_04, 0.693_261, 0.242_611_64, 0.055_171_57];
     let y = y.clamp(-60.0, 60.0);
     let rounded = y + ROUND;
     let f = y - (rounded - ROUND);
@@ -193,6 +193,6 @@ mod tests {
         t.stretch.iter().for_each(|v| hash.update(&v.to_bits().to_le_bytes()));
         let used = &t.tail[..=2 * TAIL_MIDDLE as usize];
         used.iter().flatten().for_each(|v| hash.update(&v.to_bits().to_le_bytes()));
-        assert_eq!(format!("{:08x}", hash.finalize()), "1bf8a372");
+        assert_eq!(format!("{:08x}", hash.finalize()), "a84b1b07");
     }
 }

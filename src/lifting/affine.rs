@@ -40,8 +40,8 @@ impl AffineFilter {
         let gain = 1.0 / (1.0 + sum(x, px));
         let error = truth - sum(self.weights, x);
         let g = px.map(|p| p * gain);
-        for i in 0..NUM_FEATURES {
-            self.weights[i] += g[i] * error;
+        for (weight, g) in self.weights.iter_mut().zip(g) {
+            *weight += g * error;
         }
         let grow = if xx < MAX_TRUST && yy < MAX_TRUST && zz < MAX_TRUST { 1.0 / FORGETTING } else { 1.0 };
         self.covariance = [

@@ -4,7 +4,7 @@
 //! neighbours and each parallelogram name the vertex almost exactly, save the few that reach across
 //! an irregularity or a crease. Their mean is spoilt by those, their median and their mode are not.
 
-use super::lanes::Lanes;
+use crate::lanes::Lanes;
 
 /// Guesses that are looked at; the rest of a large ring is left out.
 pub(crate) const MAX_GUESSES: usize = 16;

@@ -3,5 +3,4 @@
 
 pub(crate) mod affine;
 pub(crate) mod consensus;
-pub(crate) mod lanes;
 pub(crate) mod neighbourhood;

@@ -6,7 +6,7 @@ use super::{GridMesh, Malformed};
 use crate::bitstream::mixer::{MixedBit, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
-use crate::lifting::lanes::Lanes;
+use crate::lanes::Lanes;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use std::collections::{HashMap, VecDeque};

@@ -5,9 +5,9 @@ use super::surroundings::{NUM_CLASSES, Surroundings};
 use crate::bitstream::mixture::Mixture;
 pub(crate) use crate::bitstream::residual::NUM_KINDS;
 use crate::bitstream::tables::{exp2, log2};
+use crate::lanes::Lanes;
 use crate::lifting::affine::AffineFilter;
 use crate::lifting::consensus::{Consensus, Guesses, MAX_GUESSES};
-use crate::lifting::lanes::Lanes;
 use crate::lifting::neighbourhood::{NUM_FEATURES, Outlook};
 
 /// Kind of the coordinate closest to the normal.
@@ -157,7 +157,7 @@ impl<'a> VertexGuess<'a> {
         let mut guesses = Guesses::new();
         guesses.insert(affine);
         let degree = around.ring.len();
-        if around.is_closed && degree % 2 == 0 && degree <= MAX_GUESSES {
+        if around.is_closed && degree.is_multiple_of(2) && degree <= MAX_GUESSES {
             let (first, second) = around.ring.split_at(degree / 2);
             for (&p, &q) in first.iter().zip(second) {
                 guesses.insert(frame.of((p + q) * 0.5));

@@ -2,7 +2,7 @@
 
 use super::GridMesh;
 use super::patch::Patches;
-use crate::lifting::lanes::Lanes;
+use crate::lanes::Lanes;
 use crate::lifting::neighbourhood::Neighbourhood;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 
