@@ -1,0 +1,329 @@
+/**
+ * The decoder on WebAssembly, in the calling thread. Names and errors follow the Rust library.
+ *
+ * ```js
+ * const wasm = await loadWasm();
+ * const decoder = new Decoder(wasm);
+ * for await (const bytes of response.body) {
+ *   for (const update of decoder.push(bytes)) draw(decoder.positions, decoder.indices, update);
+ * }
+ * ```
+ */
+
+interface Exports {
+  memory: WebAssembly.Memory;
+  create(level: number, maxMemory: number, maxVertices: number, relative: number, shade: number): number;
+  destroy(handle: number): void;
+  input(handle: number, length: number): number;
+  feed(handle: number): number;
+  step(handle: number): number;
+  report(handle: number): number;
+  report_length(handle: number): number;
+  info(handle: number): number;
+  info_length(handle: number): number;
+  message(handle: number): number;
+  message_length(handle: number): number;
+  positions(handle: number): number;
+  normals(handle: number): number;
+  cells(handle: number): number;
+  triangles(handle: number): number;
+  expected_error(handle: number): number;
+  checksum(handle: number): number;
+  is_complete(handle: number): number;
+}
+
+/** The compiled module, ready for any number of decoders. */
+export class Wasm {
+  /** @internal */
+  constructor(readonly exports: Exports) {}
+}
+
+/** What {@link loadWasm} takes; default: `lwc.wasm` beside this file. */
+export type WasmSource = string | URL | Response | BufferSource | WebAssembly.Module;
+
+/** Fetches and compiles the decoder. */
+export async function loadWasm(source: WasmSource = new URL('./lwc.wasm', import.meta.url)): Promise<Wasm> {
+  const from = typeof source === 'string' || source instanceof URL ? await fetch(source) : source;
+  let module: BufferSource | WebAssembly.Module;
+  if (typeof Response !== 'undefined' && from instanceof Response) {
+    if (!from.ok) throw new Error(`lwc.wasm: the server answers ${from.status}`);
+    // Not every static server sends the media type that streaming compilation insists on.
+    module = await from.arrayBuffer();
+  } else {
+    module = from as BufferSource | WebAssembly.Module;
+  }
+  const isModule = module instanceof WebAssembly.Module;
+  const compiled = isModule ? (module as WebAssembly.Module) : await WebAssembly.compile(module as BufferSource);
+  return new Wasm((await WebAssembly.instantiate(compiled)).exports as unknown as Exports);
+}
+
+export type PassKind = 'base' | 'split' | 'refine';
+
+/** One pass of a stream, and the mesh that stands after it. */
+export interface PassInfo {
+  kind: PassKind;
+  level: number;
+  /** Bits per coordinate. */
+  precision: number;
+  vertices: number;
+  faces: number;
+  /** Bytes of its chunk. */
+  bytes: number;
+  /** Bytes of the stream up to the end of the pass. */
+  end: number;
+}
+
+/** What a stream says of itself before its first pass. */
+export interface StreamInfo {
+  /** Bits per coordinate of the finest mesh. */
+  precision: number;
+  /** Smallest corner of the grid, model units. */
+  origin: [number, number, number];
+  /** Side of the grid, model units. */
+  side: number;
+  totalBytes: number;
+  finestLevel: number;
+  passes: PassInfo[];
+}
+
+/** From `start` up to but without `end`. */
+export interface Range {
+  start: number;
+  end: number;
+}
+
+/** What one finished pass changed. */
+export interface Update {
+  /** Number of the pass, 0 is the base mesh. */
+  index: number;
+  pass: PassInfo;
+  /** Vertices with a new or different position. */
+  vertices: Range;
+  /** Triangles that are new. */
+  newTriangles: Range;
+  /** Older triangles with other vertices: ascending, disjoint. */
+  rewrittenTriangles: Range[];
+}
+
+export type DecodeErrorKind =
+  | 'NotAStream'
+  | 'Unsupported'
+  | 'Checksum'
+  | 'Malformed'
+  | 'Limit'
+  | 'Failed'
+  | 'NoMesh';
+
+/** Why a stream does not decode. One that ends early is a coarser mesh and no error. */
+export class DecodeError extends Error {
+  override name = 'DecodeError';
+  constructor(
+    readonly kind: DecodeErrorKind,
+    message: string,
+  ) {
+    super(message);
+  }
+}
+
+const ERRORS: DecodeErrorKind[] = ['NotAStream', 'Unsupported', 'Checksum', 'Malformed', 'Limit', 'Failed'];
+const FIRST_ERROR = 2;
+const KINDS: PassKind[] = ['base', 'split', 'refine'];
+
+/** How to decode, and what a stream that is not trusted may ask for. */
+export interface DecodeOptions {
+  /** Stop at this level. Default: the finest. */
+  level?: number;
+  /** Most bytes of memory the decoder may hold. Default 1 GiB. */
+  maxMemory?: number;
+  /** Most vertices. Default 2²⁵. */
+  maxVertices?: number;
+  /** Give positions relative to `info.origin`: keeps precision where coordinates are large. */
+  relative?: boolean;
+  /** Compute vertex normals and the expected error after each pass. */
+  shade?: boolean;
+}
+
+/** Decodes a stream as it arrives. */
+export class Decoder {
+  readonly #wasm: Exports;
+  #handle: number;
+  #info: StreamInfo | undefined;
+  #done = 0;
+
+  constructor(wasm: Wasm, options: DecodeOptions = {}) {
+    this.#wasm = wasm.exports;
+    this.#handle = this.#wasm.create(
+      options.level ?? 0xffffffff,
+      options.maxMemory ?? 2 ** 30,
+      options.maxVertices ?? 2 ** 25,
+      options.relative ? 1 : 0,
+      options.shade ? 1 : 0,
+    );
+  }
+
+  /** Takes the next bytes, however they are cut, and applies every pass that is complete. */
+  push(bytes: Uint8Array): Update[] {
+    this.feed(bytes);
+    const updates = [];
+    for (let update = this.step(); update; update = this.step()) updates.push(update);
+    return updates;
+  }
+
+  /** Takes bytes without decoding them; {@link step} does. */
+  feed(bytes: Uint8Array): void {
+    const at = this.#wasm.input(this.#handle, bytes.length);
+    new Uint8Array(this.#wasm.memory.buffer, at, bytes.length).set(bytes);
+    this.#check(this.#wasm.feed(this.#handle));
+  }
+
+  /** Applies the next pass if all its bytes are there. */
+  step(): Update | undefined {
+    if (this.#check(this.#wasm.step(this.#handle)) === 0) return undefined;
+    this.#done += 1;
+    const words = this.#words(this.#wasm.report(this.#handle), this.#wasm.report_length(this.#handle));
+    const [, , , index, firstVertex, endVertex, firstNew, endNew] = words as unknown as number[];
+    const rewrittenTriangles: Range[] = [];
+    for (let i = 8; i < words.length; i += 2) {
+      rewrittenTriangles.push({ start: words[i]!, end: words[i + 1]! });
+    }
+    return {
+      index: index!,
+      pass: this.info!.passes[index!]!,
+      vertices: { start: firstVertex!, end: endVertex! },
+      newTriangles: { start: firstNew!, end: endNew! },
+      rewrittenTriangles,
+    };
+  }
+
+  /**
+   * Applies passes until `milliseconds` are over; returns what was done, and `more` if passes may be
+   * waiting. A pass is not interrupted: the last one of a call may exceed the time.
+   */
+  stepFor(milliseconds: number): { updates: Update[]; more: boolean } {
+    const updates = [];
+    const end = performance.now() + milliseconds;
+    do {
+      const update = this.step();
+      if (!update) return { updates, more: false };
+      updates.push(update);
+    } while (performance.now() < end);
+    return { updates, more: true };
+  }
+
+  /** What the stream says of itself, once its table of passes has arrived. */
+  get info(): StreamInfo | undefined {
+    this.#info ??= this.#readInfo();
+    return this.#info;
+  }
+
+  /** Number of passes applied. */
+  get passesDone(): number {
+    return this.#done;
+  }
+
+  /** The last pass applied: level, precision and counts of the mesh at hand. */
+  get pass(): PassInfo | undefined {
+    return this.#done > 0 ? this.info?.passes[this.#done - 1] : undefined;
+  }
+
+  /** True once the last pass of the stream, or of the wanted level, has been applied. */
+  get isComplete(): boolean {
+    return this.#wasm.is_complete(this.#handle) === 1;
+  }
+
+  /**
+   * Positions, n × 3. A view of the decoder's memory like the others below: valid until the next call of
+   * `feed`, `step` or `push`, and not to be written to.
+   */
+  get positions(): Float32Array {
+    return this.#view(Float32Array, this.#wasm.positions(this.#handle), this.#vertices);
+  }
+
+  /** Unit vertex normals, n × 3, with the option `shade`. */
+  get normals(): Float32Array {
+    return this.#view(Float32Array, this.#wasm.normals(this.#handle), this.#vertices);
+  }
+
+  /** Grid cells of the vertices, n × 3: the integers that the stream holds. */
+  get cells(): Int32Array {
+    return this.#view(Int32Array, this.#wasm.cells(this.#handle), this.#vertices);
+  }
+
+  /** Vertex indices of the triangles, m × 3, counter-clockwise. */
+  get indices(): Uint32Array {
+    return this.#view(Uint32Array, this.#wasm.triangles(this.#handle), this.pass?.faces ?? 0);
+  }
+
+  /**
+   * A guess of the RMS distance to the finest mesh, model units, from how much the surface bends and from
+   * the precision; with the option `shade`.
+   */
+  get expectedError(): number {
+    return this.#wasm.expected_error(this.#handle);
+  }
+
+  /** Checksum of counts, cells and triangles: the same on every platform. */
+  checksum(): number {
+    return this.#wasm.checksum(this.#handle) >>> 0;
+  }
+
+  /** Frees the decoder's memory. It cannot be used afterwards. */
+  free(): void {
+    if (this.#handle >= 0) this.#wasm.destroy(this.#handle);
+    this.#handle = -1;
+  }
+
+  get #vertices(): number {
+    return this.pass?.vertices ?? 0;
+  }
+
+  #check(code: number): number {
+    if (code < FIRST_ERROR) return code;
+    const at = this.#wasm.message(this.#handle);
+    const text = new Uint8Array(this.#wasm.memory.buffer, at, this.#wasm.message_length(this.#handle));
+    throw new DecodeError(ERRORS[code - FIRST_ERROR] ?? 'Failed', new TextDecoder().decode(text));
+  }
+
+  #words(at: number, length: number): Uint32Array {
+    return new Uint32Array(this.#wasm.memory.buffer, at, length);
+  }
+
+  #view<T>(type: new (buffer: ArrayBufferLike, at: number, length: number) => T, at: number, rows: number): T {
+    return new type(this.#wasm.memory.buffer, rows > 0 ? at : 0, rows * 3);
+  }
+
+  #readInfo(): StreamInfo | undefined {
+    const length = this.#wasm.info_length(this.#handle);
+    if (length === 0) return undefined;
+    const numbers = [...new Float64Array(this.#wasm.memory.buffer, this.#wasm.info(this.#handle), length)];
+    const [precision, x, y, z, side, totalBytes] = numbers as [number, number, number, number, number, number];
+    const passes: PassInfo[] = [];
+    for (let i = 6; i < length; i += 7) {
+      const [kind, level, bits, vertices, faces, bytes, end] = numbers.slice(i, i + 7) as [
+        number, number, number, number, number, number, number,
+      ];
+      passes.push({ kind: KINDS[kind]!, level, precision: bits, vertices, faces, bytes, end });
+    }
+    return { precision, origin: [x, y, z], side, totalBytes, finestLevel: passes.at(-1)?.level ?? 0, passes };
+  }
+}
+
+/** A mesh that owns its arrays. */
+export interface Mesh {
+  positions: Float32Array;
+  indices: Uint32Array;
+  pass: PassInfo;
+}
+
+/** Decodes a stream, or what there is of it, in one call. */
+export function decode(wasm: Wasm, bytes: Uint8Array, options: DecodeOptions = {}): Mesh {
+  const decoder = new Decoder(wasm, options);
+  try {
+    decoder.push(bytes);
+    const { pass } = decoder;
+    if (!pass) throw new DecodeError('NoMesh', 'the stream ends before its base mesh is complete');
+    return { positions: decoder.positions.slice(), indices: decoder.indices.slice(), pass };
+  } finally {
+    decoder.free();
+  }
+}

@@ -1,0 +1,169 @@
+// The decoder on WebAssembly against what the native one recorded for the golden streams.
+import assert from 'node:assert/strict';
+import { readFileSync, readdirSync } from 'node:fs';
+import { test } from 'node:test';
+import { gzipSync } from 'node:zlib';
+import { DecodeError, Decoder, decode, loadWasm } from '../dist/decoder.js';
+
+const golden = new URL('../../format/golden/', import.meta.url);
+const names = readdirSync(golden).filter((name) => name.endsWith('.lwc')).sort();
+const read = (name) => new Uint8Array(readFileSync(new URL(name, golden)));
+const recorded = readFileSync(new URL('checksums.txt', golden), 'utf8')
+  .split('\n')
+  .filter((line) => line && !line.startsWith('#'));
+
+// The module of this build, and the one that `lwc view` carries.
+const modules = { built: '../dist/lwc.wasm', embedded: '../viewer/embedded/lwc.wasm' };
+const load = (path) => loadWasm(readFileSync(new URL(path, import.meta.url)));
+const wasm = await load(modules.built);
+
+function lines(module, name) {
+  const decoder = new Decoder(module);
+  decoder.feed(read(name));
+  const found = [];
+  for (let update = decoder.step(); update; update = decoder.step()) {
+    const { kind, level, precision, vertices, faces } = update.pass;
+    const checksum = decoder.checksum().toString(16).padStart(8, '0');
+    assert.equal(decoder.positions.length, 3 * vertices);
+    assert.equal(decoder.indices.length, 3 * faces);
+    found.push([name, update.index, kind, level, precision, vertices, faces, checksum].join(' '));
+  }
+  assert.ok(decoder.isComplete);
+  decoder.free();
+  return found;
+}
+
+for (const [which, path] of Object.entries(modules)) {
+  test(`every golden stream decodes to its checksums, ${which} module`, async () => {
+    const module = await load(path);
+    assert.ok(names.length >= 10);
+    assert.deepEqual(names.flatMap((name) => lines(module, name)), recorded);
+  });
+}
+
+test('bytes in any split give the same updates and mesh', () => {
+  for (const name of names) {
+    const bytes = read(name);
+    const whole = new Decoder(wasm);
+    const updates = whole.push(bytes);
+    const split = new Decoder(wasm);
+    const found = [];
+    for (let i = 0; i < bytes.length; i += 1) found.push(...split.push(bytes.subarray(i, i + 1)));
+    assert.deepEqual(found, updates);
+    assert.equal(split.checksum(), whole.checksum());
+    split.free();
+    whole.free();
+  }
+});
+
+// What a viewer does: patch the arrays of before with the ranges, and nothing else.
+test('the ranges of the updates name all that changed', () => {
+  for (const name of names) {
+    const decoder = new Decoder(wasm);
+    decoder.feed(read(name));
+    let positions = [];
+    let indices = [];
+    for (let update = decoder.step(); update; update = decoder.step()) {
+      const put = (array, from, { start, end }) => {
+        for (let i = 3 * start; i < 3 * end; i += 1) array[i] = from[i];
+      };
+      put(positions, decoder.positions, update.vertices);
+      for (const range of [update.newTriangles, ...update.rewrittenTriangles]) {
+        put(indices, decoder.indices, range);
+      }
+      assert.deepEqual(Float32Array.from(positions), decoder.positions.slice(), name);
+      assert.deepEqual(Uint32Array.from(indices), decoder.indices.slice(), name);
+    }
+    decoder.free();
+  }
+});
+
+test('positions are the middles of the cells', () => {
+  const decoder = new Decoder(wasm);
+  decoder.push(read('torus.lwc'));
+  const { origin, side, precision } = decoder.info;
+  const { positions, cells } = decoder;
+  for (let i = 0; i < cells.length; i += 1) {
+    const expected = origin[i % 3] + (cells[i] / (2 ** precision - 1)) * side;
+    assert.equal(positions[i], Math.fround(expected));
+  }
+  const relative = decode(wasm, read('utm-30-bits.lwc'), { relative: true });
+  assert.ok(relative.positions.every((x) => x >= 0));
+  decoder.free();
+});
+
+test('a level can be asked for, and a cut stream is a coarser mesh', () => {
+  const bytes = read('torus.lwc');
+  assert.equal(decode(wasm, bytes, { level: 2 }).pass.level, 2);
+  const cut = decode(wasm, bytes.subarray(0, bytes.length / 2));
+  assert.ok(cut.pass.vertices > 0 && cut.pass.end <= bytes.length / 2);
+});
+
+test('passes are done in slices', () => {
+  const decoder = new Decoder(wasm);
+  decoder.feed(read('torus.lwc'));
+  const first = decoder.stepFor(0);
+  assert.equal(first.updates.length, 1);
+  assert.ok(first.more);
+  const rest = decoder.stepFor(60_000);
+  assert.equal(first.updates.length + rest.updates.length, decoder.info.passes.length);
+  assert.equal(rest.more, false);
+  decoder.free();
+});
+
+test('errors have the kinds of the library and keep the last good mesh', () => {
+  const kind = (expected) => (error) => error instanceof DecodeError && error.kind === expected;
+  assert.throws(() => decode(wasm, new TextEncoder().encode('solid cube')), kind('NotAStream'));
+  assert.throws(() => decode(wasm, read('torus.lwc').subarray(0, 20)), kind('NoMesh'));
+  assert.throws(() => decode(wasm, read('torus.lwc'), { maxVertices: 10 }), kind('Limit'));
+
+  const bytes = read('torus.lwc');
+  bytes[bytes.length - 1] ^= 1;
+  const decoder = new Decoder(wasm);
+  assert.throws(() => decoder.push(bytes), kind('Checksum'));
+  const { vertices, faces } = decoder.pass;
+  assert.ok(vertices > 0);
+  assert.equal(decoder.indices.length, 3 * faces);
+  assert.ok(decoder.indices.every((v) => v < vertices));
+  assert.throws(() => decoder.push(bytes), kind('Failed'));
+  decoder.free();
+});
+
+test('normals are of unit length, and the expected error falls', () => {
+  const decoder = new Decoder(wasm, { shade: true });
+  decoder.feed(read('torus.lwc'));
+  const errors = [];
+  while (decoder.step()) errors.push(decoder.expectedError);
+  assert.ok(errors.at(-1) < errors[0] / 2, `${errors}`);
+  const { normals } = decoder;
+  for (let i = 0; i < normals.length; i += 3) {
+    assert.ok(Math.abs(Math.hypot(normals[i], normals[i + 1], normals[i + 2]) - 1) < 1e-5);
+  }
+  decoder.free();
+});
+
+test('decoders do not disturb each other, and their memory is used again', () => {
+  const size = () => wasm.exports.memory.buffer.byteLength;
+  const bytes = read('torus.lwc');
+  const alone = decode(wasm, bytes);
+  const [a, b] = [new Decoder(wasm), new Decoder(wasm)];
+  for (const byte of bytes) {
+    a.push(Uint8Array.of(byte));
+    b.push(Uint8Array.of(byte));
+  }
+  assert.deepEqual(a.positions.slice(), alone.positions);
+  assert.equal(a.checksum(), b.checksum());
+  a.free();
+  b.free();
+  const before = size();
+  for (let i = 0; i < 50; i += 1) decode(wasm, bytes);
+  assert.equal(size(), before);
+});
+
+test('the module is small', (t) => {
+  for (const [which, path] of Object.entries(modules)) {
+    const size = gzipSync(readFileSync(new URL(path, import.meta.url)), { level: 9 }).length;
+    t.diagnostic(`${which}: ${size} bytes gzip`);
+    assert.ok(size < 100_000, `${which}: ${size} bytes gzip`);
+  }
+});
