@@ -26,5 +26,6 @@ fn dispatch(args: &Args, ui: &Ui) -> anyhow::Result<()> {
         Command::Info(args) => cli::info::run(args),
         Command::Describe(args) => cli::describe::run(args, ui),
         Command::Compare(args) => cli::compare::run(args, ui),
+        Command::View(args) => cli::view::run(args, ui),
     }
 }

@@ -40,6 +40,7 @@ pub enum Command {
     Info(Info),
     Describe(Describe),
     Compare(Compare),
+    View(View),
 }
 
 /// Encode a mesh file (.obj .ply .stl, each also as .zst).
@@ -211,6 +212,25 @@ pub struct Compare {
     pub json: bool,
     #[command(flatten)]
     pub limits: LimitArgs,
+}
+
+/// Show a model in the browser: something at once, finer while it loads.
+///
+/// Serves a page on this machine, prints its address and opens it. A mesh (.obj .ply .stl, each also as
+/// .zst) is encoded first, with default options.
+#[derive(Debug, clap::Args)]
+pub struct View {
+    /// Stream (.lwc) or mesh to show.
+    #[arg(value_name = "MODEL")]
+    pub input: PathBuf,
+    /// Port to listen on; 0 is any that is free.
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    pub port: u16,
+    /// Do not start a browser.
+    #[arg(long)]
+    pub no_open: bool,
+    #[command(flatten)]
+    pub scale: Scale,
 }
 
 /// Number of levels, `None` for `auto`.

@@ -13,3 +13,4 @@ mod passes;
 mod quantity;
 pub mod ui;
 mod verify;
+pub mod view;

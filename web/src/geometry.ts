@@ -1,0 +1,115 @@
+/** A geometry of three.js that is refined in place. @module */
+
+import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Sphere } from 'three';
+import { union } from './changes.js';
+import type { StreamInfo } from './decoder.js';
+import type { MeshUpdate } from './messages.js';
+
+/** Numbers copied between two looks at the clock. */
+const BLOCK = 1 << 16;
+/** Triangles between two runs that are uploaded as one: a call to the GPU costs more than these. */
+const UPLOAD_GAP = 4096;
+
+/**
+ * Buffers of the final size, made once; each update writes the ranges that changed and marks them for
+ * upload. What is drawn is a whole mesh at every moment.
+ */
+export class RefinedGeometry extends BufferGeometry {
+  /** Longest time spent at a stretch so far, in milliseconds. */
+  longestSlice = 0;
+  readonly #position: BufferAttribute;
+  readonly #normal: BufferAttribute | undefined;
+  readonly #index: BufferAttribute;
+
+  constructor(vertices: number, faces: number, hasNormals: boolean) {
+    super();
+    const attribute = (array: Float32Array | Uint32Array, size: number) => {
+      const made = new BufferAttribute(array, size);
+      made.setUsage(DynamicDrawUsage);
+      return made;
+    };
+    this.#position = attribute(new Float32Array(3 * vertices), 3);
+    this.#index = attribute(new Uint32Array(3 * faces), 1);
+    this.setAttribute('position', this.#position);
+    this.setIndex(this.#index);
+    if (hasNormals) {
+      this.#normal = attribute(new Float32Array(3 * vertices), 3);
+      this.setAttribute('normal', this.#normal);
+    }
+    this.setDrawRange(0, 0);
+    this.boundingBox = new Box3();
+    this.boundingSphere = new Sphere();
+  }
+
+  /** Buffers for the mesh of a stream, up to a level if one is given. */
+  static of(info: StreamInfo, hasNormals: boolean, level = Infinity): RefinedGeometry {
+    const last = info.passes.filter((pass) => pass.level <= level).at(-1)!;
+    return new RefinedGeometry(last.vertices, last.faces, hasNormals);
+  }
+
+  /** Writes what changed, in slices of `milliseconds`, one a frame. */
+  async refine(update: MeshUpdate, milliseconds: number): Promise<void> {
+    const slices = this.#write(update);
+    for (;;) {
+      const start = performance.now();
+      let isDone = false;
+      while (!isDone && performance.now() - start < milliseconds) isDone = slices.next().done === true;
+      this.longestSlice = Math.max(this.longestSlice, performance.now() - start);
+      if (isDone) return;
+      await nextFrame();
+    }
+  }
+
+  // New vertices and triangles first: nothing draws them yet. Vertices that move do so one by one, and any
+  // mixture is a mesh between the two; but triangles change all at once, or there would be holes.
+  *#write(update: MeshUpdate): Generator<void> {
+    yield* copy(update.positions, this.#position, 3 * update.firstVertex);
+    if (update.normals && this.#normal) yield* copy(update.normals, this.#normal, 0);
+    yield* copy(update.indices, this.#index, 3 * update.firstTriangle);
+
+    const { rewrittenRanges: ranges, rewrittenIndices } = update;
+    const written = [];
+    let from = 0;
+    for (let i = 0; i < ranges.length; i += 2) {
+      const [start, end] = [ranges[i]!, ranges[i + 1]!];
+      const count = 3 * (end - start);
+      this.#index.array.set(rewrittenIndices.subarray(from, from + count), 3 * start);
+      from += count;
+      written.push({ start, end });
+    }
+    for (const { start, end } of union(written, UPLOAD_GAP)) mark(this.#index, 3 * start, 3 * (end - start));
+
+    this.setDrawRange(0, 3 * update.pass.faces);
+    const [x0, y0, z0, x1, y1, z1] = update.box;
+    this.boundingBox!.min.set(x0, y0, z0);
+    this.boundingBox!.max.set(x1, y1, z1);
+    this.boundingBox!.getBoundingSphere(this.boundingSphere!);
+  }
+}
+
+function* copy(from: Float32Array | Uint32Array, to: BufferAttribute, at: number): Generator<void> {
+  for (let i = 0; i < from.length; i += BLOCK) {
+    const block = from.subarray(i, i + BLOCK);
+    to.array.set(block, at + i);
+    mark(to, at + i, block.length);
+    yield;
+  }
+}
+
+function mark(attribute: BufferAttribute, start: number, count: number): void {
+  attribute.addUpdateRange(start, count);
+  attribute.needsUpdate = true;
+}
+
+/** The next frame, or soon if the page is hidden and has none. */
+function nextFrame(): Promise<void> {
+  return new Promise((resolve) => {
+    const timer = setTimeout(done, 100);
+    const frame = requestAnimationFrame(done);
+    function done(): void {
+      clearTimeout(timer);
+      cancelAnimationFrame(frame);
+      resolve();
+    }
+  });
+}

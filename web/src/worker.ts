@@ -1,0 +1,160 @@
+/** Decodes in a worker and hands over what changed, no faster than the page takes it. @module */
+
+import { Changes } from './changes.js';
+import { DecodeError, Decoder, loadWasm } from './decoder.js';
+import type { FromWorker, MeshUpdate, ToWorker } from './messages.js';
+
+const scope = globalThis as unknown as {
+  onmessage: (event: MessageEvent<ToWorker>) => void;
+  postMessage(message: FromWorker, transfer?: Transferable[]): void;
+};
+
+let decoder: Decoder | undefined;
+let slice = 8;
+let waiting: Uint8Array[] = [];
+let isTaken = false;
+let hasEnded = false;
+let hasInfo = false;
+let isRunning = false;
+let isDirty = false;
+/** Pieces given to the decoder whose passes are not all done. */
+let fed = 0;
+let error: { kind: DecodeError['kind'] | undefined; message: string } | undefined;
+let sent = { vertices: 0, triangles: 0 };
+let decodeMilliseconds = 0;
+const changes = new Changes();
+const box: MeshUpdate['box'] = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
+
+scope.onmessage = async ({ data }) => {
+  switch (data.type) {
+    case 'open':
+      decoder = new Decoder(await loadWasm(data.module), data.options);
+      slice = data.slice;
+      break;
+    case 'bytes':
+      waiting.push(data.bytes);
+      break;
+    case 'end':
+      hasEnded = true;
+      break;
+    case 'take':
+      isTaken = true;
+      break;
+  }
+  if (!isRunning) void run();
+};
+
+/** Decodes slice by slice; between two slices the messages that have come are read. */
+async function run(): Promise<void> {
+  if (!decoder) return;
+  isRunning = true;
+  while (decodeSlice(decoder)) {
+    answer(decoder, true);
+    await nextTask();
+  }
+  isRunning = false;
+  if (fed > 0) scope.postMessage({ type: 'decoded', pieces: fed });
+  fed = 0;
+  answer(decoder, false);
+}
+
+/** True if passes may be waiting still. */
+function decodeSlice(decoder: Decoder): boolean {
+  const start = performance.now();
+  const pieces = waiting.splice(0);
+  fed += pieces.length;
+  if (error) return false;
+  try {
+    for (const bytes of pieces) decoder.feed(bytes);
+    for (;;) {
+      const update = decoder.step();
+      if (!hasInfo && decoder.info) {
+        hasInfo = true;
+        scope.postMessage({ type: 'info', info: decoder.info });
+      }
+      if (!update) return false;
+      changes.add(update, sent.triangles);
+      isDirty = true;
+      if (performance.now() - start >= slice) return true;
+    }
+  } catch (caught) {
+    const kind = caught instanceof DecodeError ? caught.kind : undefined;
+    error = { kind, message: caught instanceof Error ? caught.message : String(caught) };
+    return false;
+  } finally {
+    decodeMilliseconds += performance.now() - start;
+  }
+}
+
+/** Gives what was asked for: the mesh first, then what is wrong with the stream, or its end. */
+function answer(decoder: Decoder, more: boolean): void {
+  if (!isTaken || waiting.length > 0) return;
+  if (isDirty) {
+    isTaken = false;
+    isDirty = false;
+    send(decoder);
+  } else if (error) {
+    isTaken = false;
+    scope.postMessage({ type: 'error', ...error });
+  } else if (!more && (hasEnded || decoder.isComplete)) {
+    isTaken = false;
+    scope.postMessage({ type: 'done' });
+  }
+}
+
+function send(decoder: Decoder): void {
+  const pass = decoder.pass!;
+  const firstVertex = Math.min(changes.firstVertex, sent.vertices);
+  const positions = decoder.positions.slice(3 * firstVertex);
+  const { normals } = decoder;
+  const all = decoder.indices;
+  const indices = all.slice(3 * sent.triangles);
+  const { rewritten } = changes;
+  const rewrittenRanges = Uint32Array.from(rewritten.flatMap(({ start, end }) => [start, end]));
+  const count = rewritten.reduce((sum, { start, end }) => sum + end - start, 0);
+  const rewrittenIndices = new Uint32Array(3 * count);
+  let at = 0;
+  for (const { start, end } of rewritten) {
+    rewrittenIndices.set(all.subarray(3 * start, 3 * end), at);
+    at += 3 * (end - start);
+  }
+  extendBox(positions);
+  const update: MeshUpdate = {
+    pass,
+    passesDone: decoder.passesDone,
+    isComplete: decoder.isComplete,
+    firstVertex,
+    positions,
+    normals: normals.length > 0 ? normals.slice() : undefined,
+    firstTriangle: sent.triangles,
+    indices,
+    rewrittenRanges,
+    rewrittenIndices,
+    box: [...box],
+    expectedError: decoder.expectedError,
+    decodeMilliseconds,
+  };
+  sent = { vertices: pass.vertices, triangles: pass.faces };
+  changes.clear();
+  const arrays = [positions, indices, rewrittenRanges, rewrittenIndices, ...(update.normals ? [update.normals] : [])];
+  scope.postMessage({ type: 'update', update }, arrays.map((array) => array.buffer as ArrayBuffer));
+}
+
+function extendBox(positions: Float32Array): void {
+  for (let i = 0; i < positions.length; i += 3) {
+    for (let axis = 0; axis < 3; axis += 1) {
+      const x = positions[i + axis]!;
+      if (x < box[axis]!) box[axis] = x;
+      if (x > box[axis + 3]!) box[axis + 3] = x;
+    }
+  }
+}
+
+// A timer would wait for milliseconds.
+const channel = new MessageChannel();
+function nextTask(): Promise<void> {
+  return new Promise((resolve) => {
+    channel.port1.onmessage = () => resolve();
+    channel.port2.postMessage(null);
+  });
+}
