@@ -72,6 +72,8 @@ export class Download implements AsyncIterable<Uint8Array> {
         headers: { ...headers, ...range },
         signal: request.signal,
         ...(credentials ? { credentials } : {}),
+        // The browser's cache holds the beginning of an answer that was cut and would ask in its own way.
+        ...(this.received > 0 ? { cache: 'no-store' as const } : {}),
       });
       let skip = this.#check(response);
       const reader = response.body!.getReader();

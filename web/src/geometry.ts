@@ -47,6 +47,11 @@ export class RefinedGeometry extends BufferGeometry {
     return new RefinedGeometry(last.vertices, last.faces, hasNormals);
   }
 
+  /** Grows whenever something was written: a page that draws on demand looks at it. */
+  get version(): number {
+    return this.#position.version + this.#index.version;
+  }
+
   /** Writes what changed, in slices of `milliseconds`, one a frame. */
   async refine(update: MeshUpdate, milliseconds: number): Promise<void> {
     const slices = this.#write(update);

@@ -28,7 +28,11 @@ export async function serve(files, faults = {}) {
     const speed = faults.bytesPerSecond ?? Infinity;
     const piece = Number.isFinite(speed) ? Math.max(1, Math.ceil(speed / 50)) : 1 << 14;
     for (let at = start; at < bytes.length; at += piece) {
-      if (at - start >= cut) return response.destroy();
+      if (at - start >= cut) {
+        // What was sent is to arrive first: a browser drops what nobody has read when the line breaks.
+        setTimeout(() => response.destroy(), cut > 0 ? 200 : 0);
+        return undefined;
+      }
       response.write(bytes.subarray(at, at + piece));
       const wait = Number.isFinite(speed) ? (1000 * piece) / speed : 0;
       await new Promise((resolve) => (wait > 0 ? setTimeout(resolve, wait) : setImmediate(resolve)));

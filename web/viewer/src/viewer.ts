@@ -5,7 +5,7 @@ import {
   Scene, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { LWCLoader, type Load, type RefinedGeometry, type Refinement } from '../../src/loader.js';
+import { LWCLoader, RefinedGeometry, type Load, type Refinement } from '../../src/loader.js';
 import { Kept, throttle } from './network.js';
 
 function element<T extends HTMLElement>(id: string): T {
@@ -18,16 +18,16 @@ const url = parameters.get('model') ?? 'model.lwc';
 // --- The scene -------------------------------------------------------------------------------------
 
 const canvas = element<HTMLCanvasElement>('view');
-const renderer = new WebGLRenderer({ canvas, antialias: true });
+const renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
 renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
 const scene = new Scene();
 scene.background = new Color(0x14171c);
 const camera = new PerspectiveCamera(40, 1, 0.01, 100);
-const key = new DirectionalLight(0xffffff, 2.2);
-key.position.set(-1, 1.5, 1.2);
+const key = new DirectionalLight(0xfff4e6, 2.6);
+key.position.set(-2, 1.6, 0.5);
 // The light goes with the eye, so that no side is dark.
 camera.add(key);
-scene.add(new HemisphereLight(0xdfe9ff, 0x2b2620, 1.1), camera);
+scene.add(new HemisphereLight(0xb9cdf2, 0x2b2620, 0.7), camera);
 const material = new MeshStandardMaterial({ color: 0xc9ced6, roughness: 0.72, side: 2 });
 const wires = new MeshStandardMaterial({ color: 0x6cb6ff, wireframe: true, transparent: true, opacity: 0.35 });
 const mesh = new Mesh<RefinedGeometry>(undefined, material);
@@ -42,13 +42,24 @@ controls.enableDamping = true;
 
 let longestFrame = 0;
 let lastFrame = performance.now();
+let isStale = true;
+let drawnVersion = -1;
 renderer.setAnimationLoop(() => {
   const now = performance.now();
   longestFrame = Math.max(longestFrame, now - lastFrame);
   lastFrame = now;
-  controls.update();
-  renderer.render(scene, camera);
+  // Slices of an update go to the GPU as they come, not all at the end.
+  const version = mesh.geometry instanceof RefinedGeometry ? mesh.geometry.version : 0;
+  // With damping the camera goes on moving for a while.
+  if (controls.update() || isStale || version !== drawnVersion) renderer.render(scene, camera);
+  isStale = false;
+  drawnVersion = version;
 });
+
+/** Has the next frame drawn. */
+function redraw(): void {
+  isStale = true;
+}
 
 function resize(): void {
   renderer.setSize(innerWidth, innerHeight, false);
@@ -58,13 +69,14 @@ function resize(): void {
   const above = innerWidth <= 560 ? element('facts').offsetHeight + 12 : 0;
   camera.setViewOffset(innerWidth, innerHeight, 0, (below - above) / 2, innerWidth, innerHeight);
   camera.updateProjectionMatrix();
+  redraw();
   drawChart();
 }
 
 function frame(geometry: RefinedGeometry): void {
   const { center, radius } = geometry.boundingSphere!;
   const narrow = Math.min(1, camera.aspect);
-  const distance = (radius * 1.25) / Math.sin((camera.fov * Math.PI) / 360) / narrow;
+  const distance = (radius * 0.95) / Math.sin((camera.fov * Math.PI) / 360) / narrow;
   camera.position.set(center.x + distance * 0.45, center.y + distance * 0.3, center.z + distance * 0.84);
   camera.near = radius / 100;
   camera.far = distance * 20;
@@ -134,6 +146,7 @@ function show(geometry: RefinedGeometry, refinement: Refinement): void {
   mesh.visible = true;
   wire.visible = element<HTMLInputElement>('wire').checked;
   shown = refinement;
+  redraw();
   facts();
 }
 
@@ -184,6 +197,7 @@ async function scrub(): Promise<void> {
     } catch (error) {
       // Too few bytes for a mesh: nothing to draw.
       mesh.visible = wire.visible = false;
+      redraw();
       message((error as Error).message);
       continue;
     }
@@ -298,10 +312,14 @@ element('stop').addEventListener('click', () => {
   load?.abort();
   message('Stopped. What has arrived stays.');
 });
-element('wire').addEventListener('change', () => (wire.visible = element<HTMLInputElement>('wire').checked && mesh.visible));
+element('wire').addEventListener('change', () => {
+  wire.visible = element<HTMLInputElement>('wire').checked && mesh.visible;
+  redraw();
+});
 element('flat').addEventListener('change', () => {
   material.flatShading = element<HTMLInputElement>('flat').checked;
   material.needsUpdate = true;
+  redraw();
 });
 element('colours').addEventListener('change', async () => {
   if (!colours) {
@@ -334,6 +352,7 @@ function paint(): void {
   material.vertexColors = isWanted;
   material.color.set(isWanted ? 0xffffff : 0xc9ced6);
   material.needsUpdate = true;
+  redraw();
 }
 
 async function about(): Promise<void> {

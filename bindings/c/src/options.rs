@@ -1,0 +1,99 @@
+//! Options as plain structs.
+
+use crate::error::{Status, tell};
+use lwc::descriptors::{Descriptor, Window};
+use lwc::{Limits, Partition};
+use std::ffi::{CStr, c_char};
+
+/// How to decode, and what a stream that is not trusted may ask for.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct DecodeOptions {
+    /// Last level wanted, 0 is the base mesh; negative for all.
+    pub level: i32,
+    /// Most bytes of memory the decoder may hold.
+    pub max_memory: u64,
+    /// Most vertices of the finest mesh decoded.
+    pub max_vertices: u32,
+    /// Most levels.
+    pub max_levels: u32,
+}
+
+/// How to encode. See `EncodeOptions` of the Rust library for what the numbers mean.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct EncodeOptions {
+    /// Name of the descriptor, such as "harris3d"; null for the default.
+    pub descriptor: *const c_char,
+    /// Name of the partition, "balanced" or "algorithm1"; null for the default.
+    pub partition: *const c_char,
+    /// Topological radius of the window, in edges.
+    pub rings: u32,
+    /// Euclidean radius of the window, in mean edges.
+    pub radius: f64,
+    /// Factor of the radius from each level to the next coarser one.
+    pub growth: f64,
+    /// Bits per coordinate, 1 to 30.
+    pub quantization: u32,
+    /// Levels above the base mesh; negative: until the base mesh is small.
+    pub levels: i32,
+    /// Grid steps to the mean edge of a level.
+    pub steps_per_edge: f64,
+}
+
+/// All levels, the limits of the Rust library.
+#[unsafe(no_mangle)]
+pub extern "C" fn lwc_decode_options_default() -> DecodeOptions {
+    let Limits { max_memory, max_vertices, max_levels } = Limits::default();
+    DecodeOptions { level: -1, max_memory, max_vertices, max_levels }
+}
+
+/// The defaults of the Rust library.
+#[unsafe(no_mangle)]
+pub extern "C" fn lwc_encode_options_default() -> EncodeOptions {
+    let options = lwc::EncodeOptions::default();
+    EncodeOptions {
+        descriptor: std::ptr::null(),
+        partition: std::ptr::null(),
+        rings: options.window.rings,
+        radius: options.window.radius,
+        growth: options.growth,
+        quantization: options.quantization,
+        levels: options.levels.map_or(-1, |levels| levels as i32),
+        steps_per_edge: options.steps_per_edge,
+    }
+}
+
+pub fn decode(options: Option<&DecodeOptions>) -> lwc::DecodeOptions {
+    let Some(&DecodeOptions { level, max_memory, max_vertices, max_levels }) = options else {
+        return lwc::DecodeOptions::new();
+    };
+    let limits = lwc::DecodeOptions::new().limits(Limits { max_memory, max_vertices, max_levels });
+    u32::try_from(level).map_or(limits, |level| limits.level(level))
+}
+
+pub fn encode(from: &EncodeOptions) -> Result<lwc::EncodeOptions, Status> {
+    let mut options = lwc::EncodeOptions::default();
+    if let Some(name) = name(from.descriptor) {
+        options.descriptor = name.parse::<Descriptor>().map_err(|_| unknown("descriptor", &name))?;
+    }
+    if let Some(name) = name(from.partition) {
+        let found = Partition::ALL.into_iter().find(|partition| partition.name() == name);
+        options.partition = found.ok_or_else(|| unknown("partition", &name))?;
+    }
+    options.window = Window { rings: from.rings, radius: from.radius };
+    options.growth = from.growth;
+    options.quantization = from.quantization;
+    options.levels = u32::try_from(from.levels).ok();
+    options.steps_per_edge = from.steps_per_edge;
+    Ok(options)
+}
+
+fn unknown(option: &str, name: &str) -> Status {
+    tell(Status::Option, &format!("there is no {option} {name}"))
+}
+
+fn name(text: *const c_char) -> Option<String> {
+    // SAFETY: the header asks for null or a string that ends in a zero, alive during the call.
+    (!text.is_null()).then(|| unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned())
+}

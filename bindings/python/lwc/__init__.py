@@ -1,0 +1,15 @@
+"""Progressive codec for triangle meshes."""
+
+from ._lwc import DecodeError, Decoder, EncodeError, Update, __version__, decode, descriptors, encode, info
+
+__all__ = [
+    "DecodeError",
+    "Decoder",
+    "EncodeError",
+    "Update",
+    "__version__",
+    "decode",
+    "descriptors",
+    "encode",
+    "info",
+]
