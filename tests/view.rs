@@ -69,9 +69,11 @@ fn the_page_and_its_parts_come_from_the_program() {
     let html = String::from_utf8(page.body).unwrap();
     assert!(html.contains("viewer.js") && !html.contains("http"), "the page needs the network");
     assert!(page.head.contains("Content-Security-Policy: default-src 'self'"));
-    for (path, kind) in
-        [("/viewer.js", "text/javascript"), ("/worker.js", "text/javascript"), ("/lwc.wasm", "application/wasm")]
-    {
+    for (path, kind) in [
+        ("/viewer.js", "text/javascript"),
+        ("/worker.js", "text/javascript"),
+        ("/lwc.wasm", "application/wasm"),
+    ] {
         let part = server.get(path, "");
         assert_eq!(part.status, 200, "{path}");
         assert!(part.head.contains(&format!("Content-Type: {kind}")), "{}", part.head);
@@ -94,6 +96,8 @@ fn the_stream_comes_whole_or_in_ranges() {
     assert_eq!((middle.status, &middle.body[..]), (206, &torus[10..20]));
     let beyond = server.get("/model.lwc", "Range: bytes=99999-\r\n");
     assert_eq!(beyond.status, 416);
+    let head = server.request(&format!("HEAD /model.lwc HTTP/1.1\r\nHost: {}\r\n", server.address));
+    assert!(head.body.is_empty() && head.head.contains(&format!("Content-Length: {}", torus.len())));
     let several = server.get("/model.lwc", "Range: bytes=0-1,4-5\r\n");
     assert_eq!((several.status, &several.body), (200, &torus));
 }
@@ -118,6 +122,14 @@ fn nothing_else_is_served() {
 }
 
 #[test]
+fn one_that_does_not_read_does_not_keep_others_waiting() {
+    let server = Server::start(TORUS);
+    let idle: Vec<TcpStream> = (0..20).map(|_| TcpStream::connect(&server.address).unwrap()).collect();
+    assert_eq!(server.get("/model.lwc", "").body, torus());
+    drop(idle);
+}
+
+#[test]
 fn a_mesh_is_encoded_and_described() {
     let server = Server::start("tests/data/knot.ply");
     let stream = server.get("/model.lwc", "").body;
@@ -128,7 +140,10 @@ fn a_mesh_is_encoded_and_described() {
 
     let about = String::from_utf8(server.get("/about.json", "").body).unwrap();
     let about: serde_json::Value = serde_json::from_str(&about).unwrap();
-    assert_eq!((about["name"].as_str(), about["bytes"].as_u64()), (Some("knot.ply"), Some(stream.len() as u64)));
+    assert_eq!(
+        (about["name"].as_str(), about["bytes"].as_u64()),
+        (Some("knot.ply"), Some(stream.len() as u64))
+    );
 
     let passes = lwc::StreamInfo::read(&stream).unwrap().unwrap().passes().len();
     let db = loop {

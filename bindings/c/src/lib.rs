@@ -199,7 +199,8 @@ pub unsafe extern "C" fn lwc_encode(
         // SAFETY: the caller's promise.
         let mesh = unsafe { mesh.as_ref() }.ok_or(Status::NullPointer)?;
         // SAFETY: the caller's promise.
-        let options = unsafe { options.as_ref() }.map_or(Ok(lwc::EncodeOptions::default()), options::encode)?;
+        let options =
+            unsafe { options.as_ref() }.map_or(Ok(lwc::EncodeOptions::default()), options::encode)?;
         let made = lwc::encode(&mesh.0, &options).map_err(error::encode)?;
         // SAFETY: the caller's promise.
         unsafe { put(encoded, Box::into_raw(Box::new(Encoded(made)))) }

@@ -13,9 +13,9 @@ fn root() -> PathBuf {
 fn the_header_is_that_of_the_source() {
     let config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
     let sources = ["lib.rs", "error.rs", "options.rs"];
-    let builder = sources
-        .iter()
-        .fold(cbindgen::Builder::new().with_config(config), |builder, name| builder.with_src(root().join("src").join(name)));
+    let builder = sources.iter().fold(cbindgen::Builder::new().with_config(config), |builder, name| {
+        builder.with_src(root().join("src").join(name))
+    });
     let mut made = Vec::new();
     builder.generate().unwrap().write(&mut made);
     let made = String::from_utf8(made).unwrap();

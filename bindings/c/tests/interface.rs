@@ -49,7 +49,10 @@ fn errors_have_a_status_and_a_sentence() {
         assert_eq!(status, Status::IndexOutOfRange);
         assert!(last_error().contains("vertex 7"), "{}", last_error());
         assert_eq!(lwc_mesh_new(null(), 3, null(), 0, &mut mesh), Status::NullPointer);
-        assert_eq!(lwc_mesh_new(positions.as_ptr(), 3, [0, 1, 2].as_ptr(), 1, null_mut()), Status::NullPointer);
+        assert_eq!(
+            lwc_mesh_new(positions.as_ptr(), 3, [0, 1, 2].as_ptr(), 1, null_mut()),
+            Status::NullPointer
+        );
         assert_eq!(lwc_mesh_new(positions.as_ptr(), 3, [0, 1, 2].as_ptr(), 1, &mut mesh), Status::Ok);
 
         let mut encoded = null_mut();

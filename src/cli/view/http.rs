@@ -1,14 +1,21 @@
 //! As much of HTTP as a page and one file need.
 
 use std::borrow::Cow;
-use std::io::Cursor;
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::net::{TcpListener, TcpStream};
 use std::ops::Range;
 use std::sync::Arc;
-use tiny_http::{Header, Method, Response, StatusCode};
+use std::time::Duration;
+
+/// Longest head of a request; browsers send about one kilobyte.
+const MAX_HEAD: u64 = 1 << 14;
+/// How long a request may take to arrive. An answer may take as long as its reader likes.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// What matters of a request.
+#[derive(Debug, Default, PartialEq, Eq)]
 pub struct Request {
-    pub is_get: bool,
+    pub method: String,
     /// Without the query.
     pub path: String,
     pub host: Option<String>,
@@ -16,19 +23,64 @@ pub struct Request {
 }
 
 impl Request {
-    pub fn of(request: &tiny_http::Request) -> Self {
-        let header = |name: &'static str| {
-            let found = request.headers().iter().find(|header| header.field.equiv(name));
-            found.map(|header| header.value.as_str().to_owned())
+    /// Reads the head; `None` if it is none.
+    fn read(from: impl Read) -> io::Result<Option<Self>> {
+        let mut lines = BufReader::new(from.take(MAX_HEAD)).lines();
+        let Some(first) = lines.next().transpose()? else { return Ok(None) };
+        let mut words = first.split(' ');
+        let (Some(method), Some(target), Some(version)) = (words.next(), words.next(), words.next()) else {
+            return Ok(None);
         };
-        let path = request.url().split(['?', '#']).next().unwrap_or_default();
-        Self {
-            is_get: matches!(request.method(), Method::Get | Method::Head),
-            path: path.to_owned(),
-            host: header("Host"),
-            range: header("Range"),
+        if !version.starts_with("HTTP/1.") || !target.starts_with('/') {
+            return Ok(None);
         }
+        let path = target.split(['?', '#']).next().unwrap_or_default();
+        let mut request = Self { method: method.into(), path: path.into(), ..Self::default() };
+        for line in lines {
+            let line = line?;
+            if line.is_empty() {
+                return Ok(Some(request));
+            }
+            let Some((name, value)) = line.split_once(':') else { return Ok(None) };
+            match name.to_ascii_lowercase().as_str() {
+                "host" => request.host = Some(value.trim().into()),
+                "range" => request.range = Some(value.trim().into()),
+                _ => {}
+            }
+        }
+        // The end of the bytes came before the end of the head.
+        Ok(None)
     }
+}
+
+/// Answers one request on each connection, each in a thread of its own, until the listener fails.
+///
+/// # Errors
+/// Those of the listener.
+pub fn serve<F>(listener: &TcpListener, answer: F) -> io::Result<()>
+where
+    F: Fn(&Request) -> Answer + Send + Sync + 'static,
+{
+    let answer = Arc::new(answer);
+    loop {
+        let stream = match listener.accept() {
+            Ok((stream, _)) => stream,
+            // Whoever came has left again.
+            Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => continue,
+            Err(error) => return Err(error),
+        };
+        let answer = Arc::clone(&answer);
+        // A reader who goes away has lost interest.
+        std::thread::spawn(move || converse(&stream, &*answer).ok());
+    }
+}
+
+fn converse(mut stream: &TcpStream, answer: &dyn Fn(&Request) -> Answer) -> io::Result<()> {
+    stream.set_read_timeout(Some(PATIENCE))?;
+    let request = Request::read(stream)?;
+    let found = request.as_ref().map_or_else(|| Answer::status(400), answer);
+    let with_body = request.is_none_or(|request| request.method != "HEAD");
+    found.write(&mut stream, with_body)
 }
 
 /// A file to send, or a piece of one.
@@ -84,8 +136,7 @@ impl Answer {
     }
 
     pub fn status(status: u16) -> Self {
-        let text = StatusCode(status).default_reason_phrase();
-        Self::new(status, "text/plain", Body::Static(text.as_bytes()))
+        Self::new(status, "text/plain", Body::Static(reason(status).as_bytes()))
     }
 
     /// The whole of a file, or the range that was asked for. What asks for more than one is answered
@@ -111,14 +162,29 @@ impl Answer {
         answer
     }
 
-    pub fn into_response(self) -> Response<impl std::io::Read> {
-        let length = self.range.len();
-        let mut body = Cursor::new(self.body);
-        body.set_position(self.range.start as u64);
-        let headers = self.headers.iter();
-        let headers = headers.filter_map(|(name, value)| Header::from_bytes(*name, value.as_bytes()).ok());
-        let body = std::io::Read::take(body, length as u64);
-        Response::new(StatusCode(self.status), headers.collect(), body, Some(length), None)
+    fn write(&self, out: &mut impl Write, with_body: bool) -> io::Result<()> {
+        let mut head = format!("HTTP/1.1 {} {}\r\n", self.status, reason(self.status));
+        for (name, value) in &self.headers {
+            head += &format!("{name}: {value}\r\n");
+        }
+        head += &format!("Content-Length: {}\r\nConnection: close\r\n\r\n", self.range.len());
+        out.write_all(head.as_bytes())?;
+        if with_body {
+            out.write_all(&self.body.as_ref()[self.range.clone()])?;
+        }
+        out.flush()
+    }
+}
+
+fn reason(status: u16) -> &'static str {
+    match status {
+        200 => "OK",
+        206 => "Partial Content",
+        400 => "Bad Request",
+        403 => "Forbidden",
+        404 => "Not Found",
+        405 => "Method Not Allowed",
+        _ => "Range Not Satisfiable",
     }
 }
 
@@ -145,6 +211,27 @@ fn parse(range: &str, total: usize) -> Option<Option<Range<usize>>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn requests_are_read_or_refused() {
+        let read = |text: &str| Request::read(text.as_bytes()).unwrap();
+        let request =
+            read("GET /a?b=c HTTP/1.1\r\nHOST: x:1\r\nrange: bytes=0-\r\nAccept: */*\r\n\r\n").unwrap();
+        assert_eq!((request.method.as_str(), request.path.as_str()), ("GET", "/a"));
+        assert_eq!((request.host.as_deref(), request.range.as_deref()), (Some("x:1"), Some("bytes=0-")));
+        for bad in [
+            "",
+            "GET /\r\n\r\n",
+            "GET / HTTP/2\r\n\r\n",
+            "GET http://x/ HTTP/1.1\r\n\r\n",
+            "GET / HTTP/1.1\r\nHost x\r\n\r\n",
+            "GET / HTTP/1.1\r\nHost: x\r\n",
+        ] {
+            assert_eq!(read(bad), None, "{bad:?}");
+        }
+        let endless = format!("GET / HTTP/1.1\r\n{}", "a: b\r\n".repeat(10_000));
+        assert_eq!(read(&endless), None);
+    }
 
     #[test]
     fn ranges_are_cut_to_the_file() {

@@ -4,18 +4,13 @@ mod http;
 mod model;
 
 use super::args::View;
-use super::exit::Failure;
 use super::ui::Ui;
 use anyhow::Context;
 use http::{Answer, Request};
 use model::Model;
 use std::io::{self, Write};
+use std::net::{Ipv4Addr, TcpListener};
 use std::process::{Command, Stdio};
-use std::sync::Arc;
-use tiny_http::Server;
-
-/// Requests answered at the same time: a browser opens six connections to a server.
-const THREADS: usize = 6;
 
 const PAGE: &[u8] = include_bytes!("../../../web/viewer/index.html");
 const SCRIPT: &[u8] = include_bytes!("../../../web/viewer/embedded/viewer.js");
@@ -26,40 +21,17 @@ const DECODER: &[u8] = include_bytes!("../../../web/viewer/embedded/lwc.wasm");
 pub fn run(args: &View, ui: &Ui) -> anyhow::Result<()> {
     let model = Model::open(args, ui)?;
     // This machine only: what is shown is nobody else's business.
-    let server = Server::http(("127.0.0.1", args.port))
-        .map_err(|error| anyhow::anyhow!("cannot listen on port {}: {error}", args.port))?;
-    let port = server.server_addr().to_ip().map_or(args.port, |address| address.port());
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, args.port))
+        .with_context(|| format!("cannot listen on port {}", args.port))?;
+    let port = listener.local_addr()?.port();
     let url = format!("http://127.0.0.1:{port}/");
-    let mut out = io::stdout().lock();
-    writeln!(out, "{url}")?;
-    out.flush()?;
+    writeln!(io::stdout(), "{url}")?;
+    io::stdout().flush()?;
     ui.note(&args.input.display().to_string(), "stop with Ctrl-C");
     if !args.no_open && open(&url).is_err() {
         ui.warn(&url, "no browser could be started, please open it by hand");
     }
-    serve(Arc::new(server), &Arc::new(model), port)
-}
-
-fn serve(server: Arc<Server>, model: &Arc<Model>, port: u16) -> anyhow::Result<()> {
-    let threads: Vec<_> = (0..THREADS)
-        .map(|_| {
-            let (server, model) = (Arc::clone(&server), Arc::clone(model));
-            std::thread::spawn(move || -> io::Result<()> {
-                loop {
-                    let request = server.recv()?;
-                    let answer = answer(&Request::of(&request), &model, port);
-                    // A reader who has gone away has lost interest.
-                    let _ = request.respond(answer.into_response());
-                }
-            })
-        })
-        .collect();
-    for thread in threads {
-        if let Ok(result) = thread.join() {
-            result.map_err(Failure::Input).context("the server")?;
-        }
-    }
-    Ok(())
+    http::serve(&listener, move |request| answer(request, &model, port)).context("the server")
 }
 
 /// The whole site: these names and no others, whatever is on the disk.
@@ -69,7 +41,7 @@ fn answer(request: &Request, model: &Model, port: u16) -> Answer {
     if !request.host.as_ref().is_some_and(|host| hosts.contains(host)) {
         return Answer::status(403);
     }
-    if !request.is_get {
+    if !matches!(request.method.as_str(), "GET" | "HEAD") {
         return Answer::status(405);
     }
     match request.path.as_str() {
@@ -77,9 +49,7 @@ fn answer(request: &Request, model: &Model, port: u16) -> Answer {
         "/viewer.js" => Answer::asset("text/javascript", SCRIPT),
         "/worker.js" => Answer::asset("text/javascript", WORKER),
         "/lwc.wasm" => Answer::asset("application/wasm", DECODER),
-        "/model.lwc" => {
-            Answer::ranged("model/vnd.lwc", model.bytes(), request.range.as_deref(), model.tag())
-        }
+        "/model.lwc" => Answer::ranged("model/vnd.lwc", model.bytes(), request.range.as_deref(), model.tag()),
         "/about.json" => Answer::json(&model.about()),
         "/quality.json" => Answer::json(&model.quality()),
         "/descriptor" => Answer::bytes("application/octet-stream", model.colours().to_vec()),
