@@ -10,7 +10,7 @@ import { asteroid } from './asteroid.mjs';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
 /** The `lwc` program. */
-export const program = process.env.LWC ?? join(root, 'target/debug/lwc');
+export const program = process.env.LWC ?? join(process.env.CARGO_TARGET_DIR ?? join(root, 'target'), 'debug/lwc');
 /** Where pictures go. */
 export const out = fileURLToPath(new URL('../test/out/', import.meta.url));
 mkdirSync(out, { recursive: true });

@@ -34,7 +34,7 @@ def torus(along=48, around=24):
 
 
 def test_the_installed_package_is_tested():
-    assert ROOT not in Path(lwc.__file__).resolve().parents
+    assert "site-packages" in Path(lwc.__file__).parts
 
 
 @pytest.mark.parametrize("name, checksums", recorded().items())
