@@ -184,3 +184,44 @@ test('a bandwidth can be chosen', async (t) => {
   const seconds = (Date.now() - start) / 1000;
   assert.ok(seconds > 2 && seconds < 20, `${seconds} s`);
 });
+
+test('an error target stops the download, and it goes on when the camera comes near', async (t) => {
+  const server = await keep(t, servePage(rock.bytes, { bytesPerSecond: rock.bytes.length / 4 }));
+  const { page, errors } = await keep(t, open(server.url));
+  await page.waitForFunction(() => globalThis.lwc?.history.length > 0);
+  await page.evaluate(() => {
+    const { loader, camera } = globalThis.lwc;
+    loader.setErrorTarget({ pixels: 1, camera, height: () => innerHeight });
+    document.getElementById('again').click();
+  });
+  await page.waitForFunction(() => globalThis.lwc.load.isPaused, undefined, { timeout: 30_000 });
+  const pausedAt = await page.evaluate(() => globalThis.lwc.load.bytes);
+  assert.ok(pausedAt > 0 && pausedAt < 0.9 * rock.bytes.length, `paused at ${pausedAt} bytes`);
+  await page.waitForTimeout(600);
+  assert.equal(await page.evaluate(() => globalThis.lwc.load.bytes), pausedAt);
+
+  await page.evaluate(() => {
+    const { camera, geometry } = globalThis.lwc;
+    const { center, radius } = geometry.boundingSphere;
+    camera.position.sub(center).setLength(radius * 1.02).add(center);
+    camera.updateMatrixWorld();
+  });
+  await page.waitForFunction((before) => globalThis.lwc.load.bytes > before, pausedAt, { timeout: 30_000 });
+  assert.ok(server.requests.some(({ range }) => range === `bytes=${pausedAt}-`), 'no range request');
+  await page.evaluate(() => globalThis.lwc.loader.setErrorTarget(undefined));
+  await whenComplete(page);
+  await assertExact(page);
+  assert.deepEqual(errors, []);
+});
+
+test('an abort ends the download and keeps the mesh', async (t) => {
+  const server = await keep(t, servePage(rock.bytes, { bytesPerSecond: rock.bytes.length / 10 }));
+  const { page } = await keep(t, open(server.url));
+  await whenBytes(page, 0.05);
+  await page.click('#stop');
+  const before = await page.evaluate(() => globalThis.lwc.load.bytes);
+  await page.waitForTimeout(600);
+  const { drawn, complete } = await record(page);
+  assert.equal(await page.evaluate(() => globalThis.lwc.load.bytes), before);
+  assert.ok(drawn > 0 && !complete);
+});

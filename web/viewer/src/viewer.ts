@@ -366,6 +366,11 @@ async function about(): Promise<void> {
 // For measurements and tests.
 const record = {
   history,
+  loader,
+  camera,
+  get load() {
+    return load;
+  },
   complete: false,
   error: undefined as string | undefined,
   get longestFrame() {
