@@ -37,4 +37,4 @@ pub use limits::Limits;
 pub use mesh::repair::RepairReport;
 pub use mesh::{MeshError, TriMesh};
 #[cfg(feature = "encoder")]
-pub use partition::Partition;
+pub use partition::{Optimize, Partition};

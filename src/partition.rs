@@ -2,7 +2,8 @@
 //! per vertex.
 
 use crate::simplify::collapse::CollapseTest;
-use crate::simplify::triangulate::EarClipper;
+use crate::simplify::hole::HoleFiller;
+use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, ShrinkingSurface, Star};
 use bitvec::vec::BitVec;
 use std::collections::VecDeque;
@@ -11,8 +12,9 @@ use std::collections::VecDeque;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Partition {
-    /// The descriptor decides which vertices stay, the cost of coding which of the others go first,
-    /// and holes are triangulated so that they are cheap to code. The default.
+    /// The error against the original surface, weighed by the descriptor, decides which vertices
+    /// stay, the cost of coding which of the others go first; holes are closed by what lies close to
+    /// the surface and is cheap to code ([`Optimize`] weighs the two). The default.
     #[default]
     Balanced,
     /// Algorithm 1 to the letter: ascending descriptor, half-edge collapse along the shortest legal
@@ -42,45 +44,94 @@ pub(crate) struct Geometry<'a> {
     pub(crate) positions: &'a [[f64; 3]],
 }
 
-/// Share of the vertices, the most salient ones, that `Balanced` keeps at every level.
-const PROTECTED_SHARE: f64 = 0.05;
-/// Classes of saliency among the rest.
-const SALIENCY_CLASSES: f64 = 4.0;
-/// Valences that a class of saliency is worth.
-const CLASS_WEIGHT: f64 = 0.0;
-/// Largest valence that `Balanced` removes.
-const MAX_VALENCE: u32 = 6;
+/// What the balanced partition gives up for what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Optimize {
+    /// The smallest whole file.
+    Size,
+    /// Prefixes nearly as good as they get, for a file a little larger. The default.
+    #[default]
+    Balanced,
+    /// The best prefixes.
+    Prefix,
+}
+
+impl Optimize {
+    /// Every aim, in the order of their names in help texts.
+    pub const ALL: [Optimize; 3] = [Optimize::Size, Optimize::Balanced, Optimize::Prefix];
+
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Optimize::Size => "size",
+            Optimize::Balanced => "balanced",
+            Optimize::Prefix => "prefix",
+        }
+    }
+}
+
+/// How a level is thinned out.
+#[derive(Clone, Copy)]
+struct Thinning {
+    /// Share of the vertices, the most salient ones, that stay.
+    protected: f64,
+    /// Largest valence that goes.
+    max_valence: u32,
+    /// How much worse (squared distance) a hole may be closed to be cheaper to code.
+    tolerance: f64,
+}
+
+impl Thinning {
+    /// Most vertices come back in the finest levels: there the cost of coding counts, before that
+    /// the shape.
+    fn of(optimize: Optimize, is_fine: bool) -> Self {
+        match (optimize, is_fine) {
+            (Optimize::Size, _) => Self { protected: 0.0, max_valence: 6, tolerance: f64::INFINITY },
+            (Optimize::Balanced, true) => Self { protected: 0.1, max_valence: 6, tolerance: 8.0 },
+            (Optimize::Balanced, false) => Self { protected: 0.2, max_valence: 7, tolerance: 2.0 },
+            (Optimize::Prefix, _) => Self { protected: 0.2, max_valence: 7, tolerance: 1.0 },
+        }
+    }
+}
+
+/// Levels with more than this share of all vertices are fine.
+const FINE_SHARE: f64 = 0.5;
 
 /// Removes one level of odd vertices. `vertices` are those of the level and `scores` their
 /// descriptor values, in the same order.
 pub(crate) fn remove_level(
     partition: Partition,
+    optimize: Optimize,
     surface: &mut ShrinkingSurface,
     geometry: Geometry,
+    memory: &mut ErrorMemory,
     vertices: &[u32],
     scores: &[f64],
 ) -> LevelRecord {
+    let is_fine = vertices.len() as f64 > FINE_SHARE * surface.surface.corner_of.len() as f64;
+    let thinning = Thinning::of(optimize, is_fine);
     let order = match partition {
         Partition::Algorithm1 => by_score(vertices, scores),
-        Partition::Balanced => by_cost(surface, vertices, scores),
+        Partition::Balanced => by_cost(surface, memory, vertices, scores, thinning),
     };
     let mut tagged: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     let mut record = LevelRecord::default();
     let mut star = Star::default();
     let mut collapse = CollapseTest::default();
-    let mut clipper = EarClipper::default();
+    let mut filler = HoleFiller::default();
+    let Geometry { grid, positions } = geometry;
     for vertex in order {
         if tagged[vertex as usize] {
             continue;
         }
         surface.read_star(vertex, &mut star);
-        let clipped = match partition {
-            Partition::Algorithm1 => None,
-            Partition::Balanced => clipper.clip(surface, &star, geometry.grid),
+        let ears = match partition {
+            Partition::Algorithm1 => collapse.shortest_legal(surface, &star, grid, positions),
+            Partition::Balanced => filler.fill(surface, &star, grid, positions, thinning.tolerance),
         };
-        let ears =
-            clipped.or_else(|| collapse.shortest_legal(surface, &star, geometry.grid, geometry.positions));
         let Some(ears) = ears else { continue };
+        memory.hand_on(&star);
         let faces = surface.remove(&star, ears);
         record.push(vertex, &star.ring, faces);
         star.ring.iter().for_each(|&v| tagged.set(v as usize, true));
@@ -99,25 +150,36 @@ fn by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
     order.into_iter().map(|i| vertices[i]).collect()
 }
 
-/// Low valence and low saliency first, ties along a walk over the surface; the most salient
-/// vertices and those of high valence are left out.
-fn by_cost(surface: &ShrinkingSurface, vertices: &[u32], scores: &[f64]) -> Vec<u32> {
-    let ranked = by_score(vertices, scores);
+/// Low valence first, ties along a walk over the surface; the most salient vertices and those of
+/// high valence are left out. Saliency is the error of the best collapse, between half and twice as
+/// much by the rank of the descriptor.
+fn by_cost(
+    surface: &ShrinkingSurface,
+    memory: &ErrorMemory,
+    vertices: &[u32],
+    scores: &[f64],
+    thinning: Thinning,
+) -> Vec<u32> {
+    let mut free = by_score(vertices, scores);
+    if thinning.protected > 0.0 {
+        let mut star = Star::default();
+        let count = free.len() as f64;
+        let saliency: Vec<f64> = free
+            .iter()
+            .enumerate()
+            .map(|(rank, &v)| {
+                surface.read_star(v, &mut star);
+                memory.least_error(&star).0 * (2.0 * rank as f64 / count - 1.0).exp2()
+            })
+            .collect();
+        free = by_score(&free, &saliency);
+        free.truncate(((1.0 - thinning.protected) * count).ceil() as usize);
+    }
     let walk = breadth_first(surface, vertices);
-    let free = ((1.0 - PROTECTED_SHARE) * ranked.len() as f64).ceil();
-    let mut keyed: Vec<(u32, u32, u32)> = ranked
-        .iter()
-        .enumerate()
-        .take(free as usize)
-        .filter_map(|(rank, &v)| {
-            let valence = surface.surface.valence[v as usize];
-            let class = (rank as f64 / free * SALIENCY_CLASSES).floor();
-            let cost = 4.0 * (f64::from(valence) + CLASS_WEIGHT * class);
-            (valence <= MAX_VALENCE).then_some((cost as u32, walk[v as usize], v))
-        })
-        .collect();
-    keyed.sort_unstable();
-    keyed.into_iter().map(|(_, _, v)| v).collect()
+    let valence = |v: u32| surface.surface.valence[v as usize];
+    free.retain(|&v| valence(v) <= thinning.max_valence);
+    free.sort_unstable_by_key(|&v| (valence(v), walk[v as usize]));
+    free
 }
 
 /// Position of each vertex in a breadth-first walk.

@@ -28,7 +28,7 @@ fn streams() -> Vec<(&'static str, Vec<u8>)> {
         let mut options = EncodeOptions::default();
         options.partition = partition;
         options.quantization = quantization;
-        options.steps_per_edge = 6.0;
+        options.steps_per_edge = Some(6.0);
         cases.push((name, encode(&mesh, &options).unwrap().bytes));
     }
     cases

@@ -6,6 +6,7 @@ use crate::TriMesh;
 use crate::descriptors::{self, Window};
 use crate::mesh::Surface;
 use crate::partition::{Geometry, remove_level};
+use crate::simplify::memory::ErrorMemory;
 use crate::simplify::shrinking::FREE;
 use crate::simplify::{LevelRecord, ShrinkingSurface};
 
@@ -27,6 +28,8 @@ pub(super) struct Hierarchy {
     pub(super) base_faces: Vec<u32>,
     /// Mean edge length in steps of the full grid, base first, then each finer level.
     pub(super) mean_edges: Vec<f64>,
+    /// Mean squared distance of the full surface from each level, in squared steps, in that order.
+    pub(super) errors: Vec<f64>,
     pub(super) num_vertices: usize,
     pub(super) num_faces: usize,
 }
@@ -45,14 +48,24 @@ pub(super) fn analyse(
     let mut window = options.window;
     let mut records = Vec::new();
     let mut level = Level::collect(&shrinking);
+    let mut memory = ErrorMemory::new(&shrinking.surface, &model.positions);
     let mut mean_edges = vec![level.mean_edge(&model.cells)];
+    let mut errors = vec![0.0];
 
     while wants_level(options, records.len(), shrinking.num_vertices()) {
         let fraction = 1.0 - shrinking.num_vertices() as f64 / num_vertices as f64;
         progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });
         let scores = level.scores(&model.positions, options, &window, mean_edge);
         let before = shrinking.num_vertices();
-        let record = remove_level(options.partition, &mut shrinking, geometry, &level.vertices, &scores);
+        let record = remove_level(
+            options.partition,
+            options.optimize,
+            &mut shrinking,
+            geometry,
+            &mut memory,
+            &level.vertices,
+            &scores,
+        );
         if record.len() == 0 {
             break;
         }
@@ -60,12 +73,14 @@ pub(super) fn analyse(
         records.push(record);
         level = Level::collect(&shrinking);
         mean_edges.push(level.mean_edge(&model.cells));
+        errors.push(memory.mean_error(&level.vertices) * model.steps_per_unit().powi(2));
         window.radius *= options.growth;
         if is_small && options.levels.is_none() {
             break;
         }
     }
     mean_edges.reverse();
+    errors.reverse();
     let base = Surface::from_triangles(level.triangles, level.vertices.len());
     debug_assert!(base.is_ok(), "removal keeps a surface: {base:?}");
     Hierarchy {
@@ -74,6 +89,7 @@ pub(super) fn analyse(
         base_vertices: level.vertices,
         base_faces: level.faces,
         mean_edges,
+        errors,
         num_vertices,
         num_faces,
     }

@@ -14,6 +14,14 @@ pub(super) struct Model {
     pub(super) unit: f64,
 }
 
+impl Model {
+    /// Steps of the grid to a unit of `positions`; 0 if all vertices share one place.
+    pub(super) fn steps_per_unit(&self) -> f64 {
+        let side = self.grid.side * self.unit;
+        if side > 0.0 { f64::from((1_u32 << self.grid.precision) - 1) / side } else { 0.0 }
+    }
+}
+
 /// Quantises the vertices `source` of `mesh`; there is at least one.
 pub(super) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result<Model, EncodeError> {
     let at = |v: u32| mesh.positions()[v as usize];
