@@ -50,6 +50,10 @@ pub fn decode(data: &[u8]) {
     if let Some(mesh) = decoder.mesh() {
         assert_valid(mesh);
     }
+    if let Some(preview) = decoder.preview() {
+        let surface = Surface::from_triangles(preview.triangles().to_vec(), preview.positions().len());
+        assert!(surface.is_ok(), "{:?}", surface.err());
+    }
 }
 
 /// The same bytes, cut differently, give the same updates, meshes and error. The first eight bytes
