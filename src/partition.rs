@@ -6,6 +6,7 @@ use crate::simplify::hole::HoleFiller;
 use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, ShrinkingSurface, Star};
 use bitvec::vec::BitVec;
+use rayon::prelude::*;
 use std::collections::VecDeque;
 
 /// How a level is split into odd and even vertices.
@@ -142,12 +143,18 @@ pub(crate) fn remove_level(
 
 /// Ascending score, ties by index.
 fn by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
-    let mut order: Vec<usize> = (0..vertices.len()).collect();
-    // Adding 0 makes −0 equal to 0.
+    places_by_score(vertices, scores).into_iter().map(|i| vertices[i as usize]).collect()
+}
+
+/// The same as places in `vertices`.
+fn places_by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
     order.sort_by(|&a, &b| {
+        let (a, b) = (a as usize, b as usize);
+        // Adding 0 makes −0 equal to 0.
         (scores[a] + 0.0).total_cmp(&(scores[b] + 0.0)).then(vertices[a].cmp(&vertices[b]))
     });
-    order.into_iter().map(|i| vertices[i]).collect()
+    order
 }
 
 /// Low valence first, ties along a walk over the surface; the most salient vertices and those of
@@ -160,26 +167,32 @@ fn by_cost(
     scores: &[f64],
     thinning: Thinning,
 ) -> Vec<u32> {
-    let mut free = by_score(vertices, scores);
+    let mut free = vertices.to_vec();
     if thinning.protected > 0.0 {
-        let mut star = Star::default();
-        let count = free.len() as f64;
-        let saliency: Vec<f64> = free
-            .iter()
-            .enumerate()
-            .map(|(rank, &v)| {
-                surface.read_star(v, &mut star);
-                memory.least_error(&star).0 * (2.0 * rank as f64 / count - 1.0).exp2()
-            })
-            .collect();
-        free = by_score(&free, &saliency);
-        free.truncate(((1.0 - thinning.protected) * count).ceil() as usize);
+        let saliency = saliency(surface, memory, vertices, scores);
+        free = by_score(vertices, &saliency);
+        free.truncate(((1.0 - thinning.protected) * free.len() as f64).ceil() as usize);
     }
     let walk = breadth_first(surface, vertices);
     let valence = |v: u32| surface.surface.valence[v as usize];
     free.retain(|&v| valence(v) <= thinning.max_valence);
     free.sort_unstable_by_key(|&v| (valence(v), walk[v as usize]));
     free
+}
+
+/// Error of the best collapse of each vertex, weighed by the rank of its score.
+fn saliency(surface: &ShrinkingSurface, memory: &ErrorMemory, vertices: &[u32], scores: &[f64]) -> Vec<f64> {
+    const MIN_PARALLEL: usize = 2048;
+    let mut weight = vec![0.0_f64; vertices.len()];
+    for (rank, place) in places_by_score(vertices, scores).into_iter().enumerate() {
+        weight[place as usize] = (2.0 * rank as f64 / vertices.len() as f64 - 1.0).exp2();
+    }
+    let weighed = |star: &mut Star, (&v, weight): (&u32, f64)| {
+        surface.read_star(v, star);
+        weight * memory.least_error(star).0
+    };
+    let pairs = vertices.par_iter().zip(weight).with_min_len(MIN_PARALLEL);
+    pairs.map_init(Star::default, weighed).collect()
 }
 
 /// Position of each vertex in a breadth-first walk.

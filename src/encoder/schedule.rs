@@ -16,17 +16,21 @@ pub(super) struct Schedule {
     pub(super) steps: Vec<Step>,
 }
 
+/// A bit then buys about as much in a refinement as in a split: a split costs some 5 bits per vertex
+/// there is and takes 2 dB off the error, a refinement 2 bits and takes 6 dB off that of rounding.
+const ROUNDING_SHARE: f64 = 0.25;
+
 /// Each split comes with the precision its level needs; what is missing then follows the last split.
 /// Without a split there is nothing to come later for.
 ///
 /// With `steps_per_edge` a level needs as many bits as make its mean edge that many grid steps long.
-/// Else it needs as many as keep the error of rounding (a twelfth of the squared step) below that of
-/// the level's shape: a bit then buys about as much in a refinement as in a split.
+/// Else it needs as many as keep the error of rounding (a twelfth of the squared step) below
+/// [`ROUNDING_SHARE`] of that of the level's shape.
 pub(super) fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: Option<f64>) -> Schedule {
     let needed = |level: usize| {
         let hidden = match steps_per_edge {
             Some(steps) => (hierarchy.mean_edges[level] / steps).max(1.0).log2(),
-            None => 0.5 * (12.0 * hierarchy.errors[level]).max(1.0).log2(),
+            None => 0.5 * (12.0 * ROUNDING_SHARE * hierarchy.errors[level]).max(1.0).log2(),
         };
         precision.saturating_sub(hidden as u32).max(1)
     };
