@@ -60,16 +60,37 @@ pub(crate) fn remove_level(
     vertices: &[u32],
     scores: &[f64],
 ) -> LevelRecord {
-    let order = match partition {
+    let order = removal_order(partition, surface, vertices, scores);
+    remove_in_order(partition, surface, geometry, &order)
+}
+
+/// The vertices that may be removed, in the order in which that is tried.
+pub(crate) fn removal_order(
+    partition: Partition,
+    surface: &ShrinkingSurface,
+    vertices: &[u32],
+    scores: &[f64],
+) -> Vec<u32> {
+    match partition {
         Partition::Algorithm1 => by_score(vertices, scores),
         Partition::Balanced => by_cost(surface, vertices, scores),
-    };
+    }
+}
+
+/// Removes the vertices of `order` one after the other, unless a neighbour went before or no removal
+/// is legal.
+pub(crate) fn remove_in_order(
+    partition: Partition,
+    surface: &mut ShrinkingSurface,
+    geometry: Geometry,
+    order: &[u32],
+) -> LevelRecord {
     let mut tagged: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     let mut record = LevelRecord::default();
     let mut star = Star::default();
     let mut collapse = CollapseTest::default();
     let mut clipper = EarClipper::default();
-    for vertex in order {
+    for &vertex in order {
         if tagged[vertex as usize] {
             continue;
         }

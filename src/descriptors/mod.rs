@@ -30,7 +30,7 @@ mod scale;
 mod shape_index;
 mod sqem;
 mod surface;
-mod symmetric;
+pub(crate) mod symmetric;
 mod window;
 
 pub use window::Window;
@@ -158,4 +158,15 @@ pub fn evaluate_with_progress(
         *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };
     }
     values
+}
+
+/// Mean number of vertices in a window, the centre included, over the vertices that have neighbours.
+///
+/// `window` and `mean_edge` as in [`evaluate`]; 0 where that gives zeros. Runs on the current rayon pool.
+pub fn mean_window_size(mesh: &TriMesh, window: &Window, mean_edge: f64) -> f64 {
+    let usable = window.radius > 0.0 && mean_edge > 0.0 && mean_edge.is_finite();
+    let Some(surface) = usable.then(|| Surface::new(mesh, mean_edge)).flatten() else { return 0.0 };
+    let sizes = window::map_windows(&surface, window, &|_| (), |local| local.len());
+    let windows = sizes.iter().filter(|&&size| size > 0).count();
+    sizes.iter().sum::<usize>() as f64 / windows.max(1) as f64
 }

@@ -5,17 +5,17 @@ use crate::bitstream::header::Grid;
 use crate::{EncodeError, TriMesh};
 
 /// The vertices of a surface, on the grid and off it.
-pub(super) struct Model {
-    pub(super) grid: Grid,
-    pub(super) cells: Vec<[i32; 3]>,
+pub(crate) struct Model {
+    pub(crate) grid: Grid,
+    pub(crate) cells: Vec<[i32; 3]>,
     /// Coordinates of the input times `unit`.
-    pub(super) positions: Vec<[f64; 3]>,
+    pub(crate) positions: Vec<[f64; 3]>,
     /// A power of two that brings the side near 1, so that squares neither overflow nor vanish.
-    pub(super) unit: f64,
+    pub(crate) unit: f64,
 }
 
 /// Quantises the vertices `source` of `mesh`; there is at least one.
-pub(super) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result<Model, EncodeError> {
+pub(crate) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result<Model, EncodeError> {
     let at = |v: u32| mesh.positions()[v as usize];
     let first = at(source[0]);
     let (low, high) = source.iter().map(|&v| at(v)).fold((first, first), |(low, high), p| {
