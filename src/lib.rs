@@ -13,6 +13,8 @@ mod error;
 pub mod fuzzing;
 #[cfg(feature = "io")]
 pub mod io;
+#[cfg(feature = "encoder")]
+mod levels;
 mod lifting;
 mod limits;
 pub mod mesh;
@@ -22,6 +24,8 @@ pub mod metrics;
 #[cfg(feature = "encoder")]
 mod partition;
 mod passes;
+#[cfg(feature = "render")]
+pub mod render;
 #[cfg(feature = "encoder")]
 mod simplify;
 

@@ -5,16 +5,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 14] = [
+const LAYERS: [(&str, &[&str]); 16] = [
     ("error", &[]),
     ("limits", &["error"]),
     ("bitstream", &[]),
     ("mesh", &[]),
     ("io", &["mesh"]),
     ("metrics", &["mesh"]),
+    ("render", &["mesh"]),
     ("descriptors", &["mesh"]),
     ("lifting", &[]),
     ("simplify", &["mesh"]),
+    ("levels", &["mesh", "simplify"]),
     ("partition", &["mesh", "simplify"]),
     ("passes", &["bitstream", "lifting", "mesh"]),
     ("decoder", &["bitstream", "error", "limits", "mesh", "passes"]),
@@ -25,6 +27,7 @@ const LAYERS: [(&str, &[&str]); 14] = [
             "decoder",
             "descriptors",
             "error",
+            "levels",
             "limits",
             "mesh",
             "partition",
