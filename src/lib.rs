@@ -8,6 +8,8 @@ pub mod descriptors;
 #[cfg(feature = "encoder")]
 mod encoder;
 mod error;
+#[cfg(feature = "experiment")]
+pub mod experiment;
 #[cfg(feature = "fuzzing")]
 #[doc(hidden)]
 pub mod fuzzing;
