@@ -4,6 +4,8 @@
 mod bitstream;
 mod decoder;
 #[cfg(feature = "encoder")]
+pub mod decomposition;
+#[cfg(feature = "encoder")]
 pub mod descriptors;
 #[cfg(feature = "encoder")]
 mod encoder;

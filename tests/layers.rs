@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 17] = [
+const LAYERS: [(&str, &[&str]); 18] = [
     ("error", &[]),
     ("limits", &["error"]),
     ("bitstream", &[]),
@@ -34,6 +34,10 @@ const LAYERS: [(&str, &[&str]); 17] = [
             "passes",
             "simplify",
         ],
+    ),
+    (
+        "decomposition",
+        &["decoder", "descriptors", "encoder", "error", "levels", "limits", "mesh", "partition", "simplify"],
     ),
     ("experiment", &["descriptors", "encoder", "error", "levels", "mesh", "partition", "simplify"]),
     // Reaches into everything, and is no part of the library.

@@ -31,13 +31,18 @@ pub(crate) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result
         let scaled = if scaled.is_finite() { scaled } else { (x - low) / side * steps };
         if side > 0.0 { (scaled + 0.5).floor().clamp(0.0, steps) as i32 } else { 0 }
     };
-    let unit = power_of_two_near(1.0 / side.max(f64::MIN_POSITIVE));
+    let unit = unit_near(side);
     Ok(Model {
         grid: Grid { precision, origin: low.map(|l| l + 0.0), side },
         cells: source.iter().map(|&v| std::array::from_fn(|a| cell(at(v)[a], low[a]))).collect(),
         positions: source.iter().map(|&v| at(v).map(|x| x * unit)).collect(),
         unit,
     })
+}
+
+/// A power of two that brings `side` near 1.
+pub(crate) fn unit_near(side: f64) -> f64 {
+    power_of_two_near(1.0 / side.max(f64::MIN_POSITIVE))
 }
 
 /// The power of two at or below a positive number, within what a double can hold as a normal.
