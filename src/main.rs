@@ -28,5 +28,7 @@ fn dispatch(args: &Args, ui: &Ui) -> anyhow::Result<()> {
         Command::Compare(args) => cli::compare::run(args, ui),
         Command::Experiment(args) => cli::experiment::run(args, ui),
         Command::Render(args) => cli::render::run(args, ui),
+        Command::Filter(args) => cli::filter::run(args, ui),
+        Command::Edit(args) => cli::edit::run(args, ui),
     }
 }

@@ -42,6 +42,8 @@ pub enum Command {
     Compare(Compare),
     Experiment(super::experiment::args::Experiment),
     Render(super::render::args::Render),
+    Filter(super::filter::Filter),
+    Edit(super::edit::Edit),
 }
 
 /// Encode a mesh file (.obj .ply .stl, each also as .zst).
