@@ -7,7 +7,7 @@ mod common;
 
 use assert_cmd::Command;
 use common::*;
-use lwc::descriptors::{Descriptor, Window, mean_edge_length, mean_window_size};
+use lwc::descriptors::{Descriptor, NormalWeights, PcaQuadric, Window, mean_edge_length, mean_window_size};
 use lwc::experiment::{Experiment, Noise, Settings, Step, Units};
 use lwc::{Decoder, EncodeError, EncodeOptions, Limits, Partition, PassKind, TriMesh};
 use nalgebra::{DMatrix, Vector3};
@@ -131,6 +131,28 @@ fn units_of_the_file_are_the_mean_edge_if_that_is_one() {
 }
 
 #[test]
+fn other_readings_change_what_they_are_about() {
+    let experiment = Experiment::new(&bumpy(), None).unwrap();
+    let apds = |descriptor, normals, pca_quadric| {
+        let mut settings = settings(2);
+        settings.readings.normals = normals;
+        settings.readings.pca_quadric = pca_quadric;
+        experiment.run(descriptor, &settings, &|_| ()).iter().map(|step| step.apd).collect::<Vec<_>>()
+    };
+    for descriptor in Descriptor::ALL {
+        let usual = apds(descriptor, NormalWeights::Area, PcaQuadric::Window);
+        let uses_normals = descriptor == Descriptor::Nfv;
+        for normals in [NormalWeights::Angle, NormalWeights::Uniform] {
+            let other = apds(descriptor, normals, PcaQuadric::Window);
+            assert!(other == usual || !matches!(descriptor, Descriptor::Pca | Descriptor::Sqem));
+            assert!(other != usual || !uses_normals, "{descriptor} {normals:?}");
+        }
+        let other = apds(descriptor, NormalWeights::Area, PcaQuadric::Vertex);
+        assert_eq!(other != usual, descriptor == Descriptor::PcaQem, "{descriptor}");
+    }
+}
+
+#[test]
 fn noise_drives_the_partition_only() {
     let mesh = bumpy();
     let noise = |deviation, seed| Some(Noise { deviation, seed });
@@ -204,7 +226,16 @@ fn the_program_writes_goes_on_and_ranks() {
     let csv = || std::fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
 
     let said = ok("experiment a.ply --out out --levels 3 --descriptors pca,nfv");
-    assert!(said.contains("Ranking over 1 meshes"), "{said}");
+    assert!(said.contains("Ranking over 1 mesh;"), "{said}");
+    // Two descriptors lie as far above the mean as below it.
+    let of_mean = |name: &str, column: usize| -> f64 {
+        let line = said.lines().skip_while(|line| !line.starts_with("Ranking"));
+        let line = line.skip(2).find(|line| line.contains(name)).unwrap();
+        line.split_whitespace().nth(column).unwrap().parse().unwrap()
+    };
+    for column in [3, 7] {
+        assert!((of_mean("pca", column) + of_mean("nfv", column) - 200.0).abs() < 0.2, "{said}");
+    }
     let first = csv();
     assert_eq!(first.lines().count(), 1 + 2 * 3, "{first}");
     let columns = first.lines().next().unwrap().split(',').count();
@@ -217,6 +248,10 @@ fn the_program_writes_goes_on_and_ranks() {
     assert!(csv().starts_with(&first));
     let said = ok("experiment a.ply b.obj --out out --levels 3 --descriptors all --noise");
     assert_eq!(said.lines().filter(|line| line.contains("steps, mean apd")).count(), 8);
+    assert!(
+        said.contains("Ranking over 1 mesh;") && said.contains("Ranking over 2 meshes with noise;"),
+        "{said}"
+    );
     let json: serde_json::Value =
         serde_json::from_slice(&std::fs::read(folder.path().join("out/results.json")).unwrap()).unwrap();
     assert_eq!(json["runs"].as_array().unwrap().len(), 2 + 14);

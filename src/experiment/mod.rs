@@ -21,7 +21,7 @@ mod noise;
 
 pub use noise::Noise;
 
-use crate::descriptors::{self, Descriptor, Window};
+use crate::descriptors::{self, Descriptor, Readings, Window};
 use crate::encoder::quantise::quantise;
 use crate::levels::Level;
 use crate::mesh::Surface;
@@ -48,11 +48,19 @@ pub struct Settings {
     pub growth: f64,
     /// What lengths are measured in. Default [`Units::MeanEdge`].
     pub units: Units,
+    /// Answers to other questions that the paper leaves open.
+    pub readings: Readings,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { levels: 8, window: Window::default(), growth: 1.5, units: Units::MeanEdge }
+        Self {
+            levels: 8,
+            window: Window::default(),
+            growth: 1.5,
+            units: Units::MeanEdge,
+            readings: Readings::default(),
+        }
     }
 }
 
@@ -169,7 +177,14 @@ impl Experiment {
             let mut level = Level::collect(&shrinking);
             let (scores, mean_window, descriptor_seconds) = level.with_mesh(&self.driving, |mesh| {
                 let start = Instant::now();
-                let scores = descriptors::evaluate(descriptor, mesh, &window, unit_length);
+                let scores = descriptors::evaluate_reading(
+                    descriptor,
+                    mesh,
+                    &window,
+                    unit_length,
+                    settings.readings,
+                    &|_| (),
+                );
                 let seconds = start.elapsed().as_secs_f64();
                 (scores, descriptors::mean_window_size(mesh, &window, unit_length), seconds)
             });

@@ -3,7 +3,7 @@
 use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::value_parser;
-use lwc::descriptors::{Descriptor, UnknownDescriptor, Window};
+use lwc::descriptors::{Descriptor, NormalWeights, PcaQuadric, UnknownDescriptor, Window};
 use lwc::experiment::{Noise, Settings, Units};
 use std::path::PathBuf;
 
@@ -57,6 +57,14 @@ pub struct Experiment {
     /// Unit of length inside the descriptors: the mean edge of the mesh, or that of the file.
     #[arg(long, value_name = "UNIT", default_value = "mean-edge", value_parser = units_parser())]
     pub units: Units,
+    /// How faces count in vertex normals.
+    #[arg(long, value_name = "HOW", default_value = NormalWeights::default().name())]
+    #[arg(value_parser = normals_parser())]
+    pub normals: NormalWeights,
+    /// Quadric that pca-qem integrates: the mean of the window, or that of the vertex alone.
+    #[arg(long, value_name = "WHICH", default_value = PcaQuadric::default().name())]
+    #[arg(value_parser = quadric_parser())]
+    pub pca_quadric: PcaQuadric,
 }
 
 impl Experiment {
@@ -66,6 +74,8 @@ impl Experiment {
         settings.window = Window { rings: self.rings, radius: self.radius };
         settings.growth = self.growth;
         settings.units = self.units;
+        settings.readings.normals = self.normals;
+        settings.readings.pca_quadric = self.pca_quadric;
         settings
     }
 
@@ -95,4 +105,14 @@ fn descriptors(text: &str) -> Result<Descriptors, String> {
 fn units_parser() -> impl TypedValueParser<Value = Units> {
     PossibleValuesParser::new(["mean-edge", "model"])
         .map(|name| if name == "model" { Units::Model } else { Units::MeanEdge })
+}
+
+fn normals_parser() -> impl TypedValueParser<Value = NormalWeights> {
+    PossibleValuesParser::new(NormalWeights::ALL.map(NormalWeights::name))
+        .map(|name| NormalWeights::ALL.into_iter().find(|weights| weights.name() == name).unwrap_or_default())
+}
+
+fn quadric_parser() -> impl TypedValueParser<Value = PcaQuadric> {
+    PossibleValuesParser::new(PcaQuadric::ALL.map(PcaQuadric::name))
+        .map(|name| PcaQuadric::ALL.into_iter().find(|quadric| quadric.name() == name).unwrap_or_default())
 }

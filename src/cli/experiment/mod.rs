@@ -31,7 +31,7 @@ pub fn run(args: &Args, ui: &Ui) -> anyhow::Result<()> {
         before += weight;
     }
     drop(bar);
-    ranking::print(&mut io::stdout().lock(), &ranking::rank(&results))?;
+    ranking::print(&mut io::stdout().lock(), &results)?;
     Ok(())
 }
 

@@ -26,6 +26,8 @@ pub struct Parameters {
     pub radius: f64,
     pub growth: f64,
     pub units: Units,
+    pub normals: String,
+    pub pca_quadric: String,
 }
 
 impl From<&Settings> for Parameters {
@@ -36,6 +38,8 @@ impl From<&Settings> for Parameters {
             radius: settings.window.radius,
             growth: settings.growth,
             units: settings.units,
+            normals: settings.readings.normals.name().into(),
+            pca_quadric: settings.readings.pca_quadric.name().into(),
         }
     }
 }
@@ -99,6 +103,22 @@ impl Run {
     /// Mean of the average plane distances of all steps.
     pub fn mean_apd(&self) -> f64 {
         self.mean(|step| step.apd)
+    }
+
+    /// Average plane distance at a number of vertices: between two steps along a straight line of
+    /// logarithms, the nearest step outside.
+    pub fn apd_at(&self, vertices: f64) -> f64 {
+        let pairs = self.steps.iter().zip(self.steps.iter().skip(1));
+        for (fine, coarse) in pairs {
+            let [from, to] = [fine, coarse].map(|step| step.vertices as f64);
+            if (to..=from).contains(&vertices) && fine.apd > 0.0 && coarse.apd > 0.0 {
+                let share = (from / vertices).ln() / (from / to).ln();
+                return fine.apd * (coarse.apd / fine.apd).powf(share);
+            }
+        }
+        let distance = |step: &&Step| (step.vertices as f64 / vertices).ln().abs();
+        let nearest = self.steps.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.map_or(0.0, |step| step.apd)
     }
 
     pub fn mean_odd_share(&self) -> f64 {
