@@ -21,9 +21,9 @@ lwc describe tests/data/knot.ply -d harris3d -o docs/heat.png --clip 1 $view --v
 # Bands of the tube.
 tube="$work/tube.ply"
 models tube "$tube"
-side="$view --view 90,0 --up y"
+side="--size 560x160 --view 90,0"
 lwc filter "$tube" --gain 15..=0 -o "$work/smooth.ply"
-lwc filter "$tube" --gain 10..16=2 -o "$work/bold.ply"
+lwc filter "$tube" --gain 16..19=2 -o "$work/bold.ply"
 lwc render "$tube" -o docs/filter-original.png $side
 lwc render "$work/smooth.ply" -o docs/filter-smooth.png $side
 lwc render "$work/bold.ply" -o docs/filter-bold.png $side
@@ -39,5 +39,5 @@ lwc encode "$tube" -o "$work/tube.lwc"
 lwc decode "$work/tube.lwc" --level 8 -o "$work/coarse.ply"
 models bend "$work/coarse.ply" "$work/bent-coarse.ply"
 lwc edit "$work/tube.lwc" "$work/bent-coarse.ply" -o "$work/bent.ply"
-lwc render "$work/bent-coarse.ply" -o docs/edit-coarse.png $view --view front --wireframe --shading flat
-lwc render "$work/bent.ply" -o docs/edit-bent.png $view --view front
+lwc render "$work/bent-coarse.ply" -o docs/edit-coarse.png $view --view top --wireframe --shading flat
+lwc render "$work/bent.ply" -o docs/edit-bent.png $view --view top

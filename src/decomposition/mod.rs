@@ -178,10 +178,14 @@ impl Decomposition {
 
     /// Multiplies the details of a level: 0 removes its features, 2 exaggerates them.
     ///
+    /// Components along the surface say where a vertex lies on it rather than what shape it has; they are
+    /// never enlarged, as faces would fold over.
+    ///
     /// # Panics
     /// If there is no such level.
     pub fn scale_details(&mut self, level: usize, factor: f64) {
-        self.details[level - 1].iter_mut().for_each(|d| *d *= factor);
+        let along = factor.clamp(-1.0, 1.0);
+        self.details[level - 1].iter_mut().for_each(|d| *d *= DVec3::new(along, along, factor));
     }
 
     /// Root mean square of the details of a level, model units.
