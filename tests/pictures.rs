@@ -59,11 +59,11 @@ fn flat_shading_wires_and_outlines_are_to_be_seen() {
         pixels.collect::<std::collections::BTreeSet<_>>().len()
     };
     assert!(colours(&flat) < colours(&smooth), "{} and {}", colours(&flat), colours(&smooth));
-    let dark = |image: &Image| count(image, |p| p[3] == 255 && p[..3].iter().all(|&c| c < 90));
+    let dark = |image: &Image| count(image, |p| p[3] == 255 && p[..3].iter().all(|&c| c < 75));
     let wires = picture(&mesh, &Style { wireframe: true, ..small() });
     let outlines = picture(&mesh, &Style { silhouettes: true, ..small() });
-    assert_eq!(dark(&smooth), 0);
-    assert!(dark(&wires) > 500 && dark(&outlines) > 300, "{} and {}", dark(&wires), dark(&outlines));
+    let [plain, wires, outlines] = [smooth, wires, outlines].map(|image| dark(&image));
+    assert!(wires > plain + 200 && outlines > plain + 200, "{plain}, {wires} and {outlines}");
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn a_montage_has_the_levels_that_were_asked_for() {
     let row = 4 * width as usize;
     let dark = |rows: std::ops::Range<usize>| {
         let part = &pixels[rows.start * row..rows.end * row];
-        part.as_chunks::<4>().0.iter().filter(|p| p[..3].iter().all(|&c| c < 120)).count()
+        part.as_chunks::<4>().0.iter().filter(|p| p[..3].iter().all(|&c| c < 170)).count()
     };
     assert!(dark(80..height as usize / 2) > 50);
     folder.ok("render ball.lwc -o all.png --montage --size 60x60");

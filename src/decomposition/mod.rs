@@ -34,7 +34,7 @@
 //! decomposition.scale_details(finest, 0.0);
 //! let smoother = decomposition.reconstruct();
 //! # assert_eq!(smoother.num_vertices(), mesh.num_vertices());
-//! # Ok::<(), lwc::EncodeError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod denoise;

@@ -13,7 +13,7 @@
 //! for step in experiment.run(Descriptor::Harris3d, &Settings::default(), &|_| ()) {
 //!     println!("{} of {} vertices removed, apd {}", step.odd, step.vertices, step.apd);
 //! }
-//! # Ok::<(), lwc::EncodeError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod apd;
