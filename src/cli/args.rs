@@ -177,7 +177,7 @@ pub struct Info {
     #[arg(long)]
     pub json: bool,
     /// Draw the distance from the finest mesh over the bytes read, as .svg or .png. Decodes the stream.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "json")]
     pub plot: Option<PathBuf>,
     #[command(flatten)]
     pub limits: LimitArgs,
