@@ -112,27 +112,47 @@ pub(crate) fn remove_level(
 ) -> LevelRecord {
     let is_fine = vertices.len() as f64 > FINE_SHARE * surface.surface.corner_of.len() as f64;
     let thinning = Thinning::of(optimize, is_fine);
-    let order = match partition {
-        Partition::Algorithm1 => by_score(vertices, scores),
-        Partition::Balanced => by_cost(surface, memory, vertices, scores, thinning),
-    };
+    match partition {
+        Partition::Algorithm1 => {
+            let order = by_score(vertices, scores);
+            remove_in_order(surface, geometry, &order, None, Some(memory))
+        }
+        Partition::Balanced => {
+            let order = by_cost(surface, memory, vertices, scores, thinning);
+            remove_in_order(surface, geometry, &order, Some(thinning.tolerance), Some(memory))
+        }
+    }
+}
+
+/// Removes the vertices of `order` one after the other, unless a neighbour went before or no removal
+/// is legal: as Algorithm 1 does without a `tolerance`, else with the holes of [`HoleFiller`].
+/// `memory` is told.
+pub(crate) fn remove_in_order(
+    surface: &mut ShrinkingSurface,
+    geometry: Geometry,
+    order: &[u32],
+    tolerance: Option<f64>,
+    mut memory: Option<&mut ErrorMemory>,
+) -> LevelRecord {
     let mut tagged: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     let mut record = LevelRecord::default();
     let mut star = Star::default();
     let mut collapse = CollapseTest::default();
     let mut filler = HoleFiller::default();
     let Geometry { grid, positions } = geometry;
-    for vertex in order {
+    for &vertex in order {
         if tagged[vertex as usize] {
             continue;
         }
         surface.read_star(vertex, &mut star);
-        let ears = match partition {
-            Partition::Algorithm1 => collapse.shortest_legal(surface, &star, grid, positions),
-            Partition::Balanced => filler.fill(surface, &star, grid, positions, thinning.tolerance),
+        let ears = match tolerance {
+            None => collapse.shortest_legal(surface, &star, grid, positions),
+            Some(tolerance) => filler.fill(surface, &star, grid, positions, tolerance),
         };
         let Some(ears) = ears else { continue };
-        memory.hand_on(&star);
+        if let Some(memory) = &mut memory {
+            memory.hand_on(&star);
+        }
         let faces = surface.remove(&star, ears);
         record.push(vertex, &star.ring, faces);
         star.ring.iter().for_each(|&v| tagged.set(v as usize, true));
@@ -141,8 +161,8 @@ pub(crate) fn remove_level(
     record
 }
 
-/// Ascending score, ties by index.
-fn by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
+/// Ascending score, ties by index: the order of Algorithm 1.
+pub(crate) fn by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
     places_by_score(vertices, scores).into_iter().map(|i| vertices[i as usize]).collect()
 }
 

@@ -40,6 +40,10 @@ pub enum Command {
     Info(Info),
     Describe(Describe),
     Compare(Compare),
+    Experiment(super::experiment::args::Experiment),
+    Render(super::render::args::Render),
+    Filter(super::filter::Filter),
+    Edit(super::edit::Edit),
 }
 
 /// Encode a mesh file (.obj .ply .stl, each also as .zst).
@@ -180,12 +184,18 @@ pub struct Info {
     /// Print one JSON object.
     #[arg(long)]
     pub json: bool,
+    /// Draw the distance from the finest mesh over the bytes read, as .svg or .png. Decodes the stream.
+    #[arg(long, value_name = "FILE", conflicts_with = "json")]
+    pub plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub limits: LimitArgs,
 }
 
 /// Evaluate a descriptor at every vertex of a mesh.
 ///
-/// Writes the header `vertex,value` and one line per vertex, in the order of the file, with all digits.
-/// Vertices without faces have the value 0.
+/// As CSV: the header `vertex,value` and one line per vertex, in the order of the file, with all digits.
+/// As PNG: a picture coloured by the values, with a legend. As PLY: the mesh with the same colours at its
+/// vertices. Vertices without faces have the value 0.
 #[derive(Debug, clap::Args)]
 pub struct Describe {
     /// Mesh to describe.
@@ -193,9 +203,13 @@ pub struct Describe {
     pub input: PathBuf,
     #[command(flatten)]
     pub scale: Scale,
-    /// Table to write (.csv), `-` for standard output.
+    /// Table (.csv), picture (.png) or coloured mesh (.ply) to write, `-` for a table on standard output.
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub heat: super::render::args::HeatArgs,
+    #[command(flatten)]
+    pub picture: super::render::args::Picture,
 }
 
 /// Measure the distance between two surfaces.
@@ -233,7 +247,7 @@ fn levels(text: &str) -> Result<Levels, String> {
     }
 }
 
-fn descriptor_parser() -> impl TypedValueParser<Value = Descriptor> {
+pub fn descriptor_parser() -> impl TypedValueParser<Value = Descriptor> {
     PossibleValuesParser::new(Descriptor::ALL.map(Descriptor::name))
         .try_map(|name| name.parse::<Descriptor>())
 }

@@ -2,7 +2,7 @@
 
 mod analysis;
 mod options;
-mod quantise;
+pub(crate) mod quantise;
 mod schedule;
 mod write;
 
