@@ -13,7 +13,7 @@ view="--size 480x360"
 
 # Levels of the knot.
 lwc encode tests/data/knot.ply -o "$work/knot.lwc"
-lwc render "$work/knot.lwc" -o docs/levels.png --montage --levels 0,4,6,8,10,11,12,14 --columns 4 \
+lwc render "$work/knot.lwc" -o docs/levels.png --montage --levels 0,2,4,6,8,10,12,15 --columns 4 \
     --size 260x250 --view front --shading flat
 lwc info "$work/knot.lwc" --plot docs/rate.svg
 lwc describe tests/data/knot.ply -d harris3d -o docs/heat.png --clip 1 $view --view front
