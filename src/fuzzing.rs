@@ -12,8 +12,8 @@ use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format};
 use crate::mesh::Surface;
 use crate::{
-    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Partition, StreamInfo, TriMesh,
-    Update, encode,
+    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, StreamInfo,
+    TriMesh, Update, encode,
 };
 
 const SMALL: Limits = Limits { max_memory: 16 << 20, max_vertices: 100_000, max_levels: 64 };
@@ -49,6 +49,10 @@ pub fn decode(data: &[u8]) {
     assert_eq!(decoder.mesh().map(|m| m.checksum()), good);
     if let Some(mesh) = decoder.mesh() {
         assert_valid(mesh);
+    }
+    if let Some(preview) = decoder.preview() {
+        let surface = Surface::from_triangles(preview.triangles().to_vec(), preview.positions().len());
+        assert!(surface.is_ok(), "{:?}", surface.err());
     }
 }
 
@@ -353,7 +357,8 @@ fn options_from(input: &mut Input) -> EncodeOptions {
         partition: Partition::ALL[usize::from(input.u8()) % Partition::ALL.len()],
         quantization: 1 + u32::from(input.u8()) % 30,
         levels: Some(u32::from(input.u8() % 16)).filter(|&levels| levels < 15),
-        steps_per_edge: f64::from(1 + input.u8() % 64) * 0.5,
+        optimize: Optimize::ALL[usize::from(input.u8()) % Optimize::ALL.len()],
+        steps_per_edge: Some(f64::from(1 + input.u8() % 64) * 0.5).filter(|&steps| steps > 2.0),
         window: Window { rings: 1 + u32::from(input.u8() % 4), ..Window::default() },
         growth: 1.0 + f64::from(input.u8() % 8),
         ..EncodeOptions::default()

@@ -4,16 +4,22 @@
 mod bitstream;
 mod decoder;
 #[cfg(feature = "encoder")]
+pub mod decomposition;
+#[cfg(feature = "encoder")]
 pub mod descriptors;
 #[cfg(feature = "encoder")]
 mod encoder;
 mod error;
+#[cfg(feature = "experiment")]
+pub mod experiment;
 #[cfg(feature = "fuzzing")]
 #[doc(hidden)]
 pub mod fuzzing;
 #[cfg(feature = "io")]
 pub mod io;
 mod lanes;
+#[cfg(feature = "encoder")]
+mod levels;
 mod lifting;
 mod limits;
 pub mod mesh;
@@ -23,6 +29,8 @@ pub mod metrics;
 #[cfg(feature = "encoder")]
 mod partition;
 mod passes;
+#[cfg(feature = "render")]
+pub mod render;
 #[cfg(feature = "encoder")]
 mod simplify;
 
@@ -37,4 +45,4 @@ pub use limits::Limits;
 pub use mesh::repair::RepairReport;
 pub use mesh::{MeshError, TriMesh};
 #[cfg(feature = "encoder")]
-pub use partition::Partition;
+pub use partition::{Optimize, Partition};

@@ -23,9 +23,13 @@ fn dispatch(args: &Args, ui: &Ui) -> anyhow::Result<()> {
     match &args.command {
         Command::Encode(args) => cli::encode::run(args, ui),
         Command::Decode(args) => cli::decode::run(args, ui),
-        Command::Info(args) => cli::info::run(args),
+        Command::Info(args) => cli::info::run(args, ui),
         Command::Describe(args) => cli::describe::run(args, ui),
         Command::Compare(args) => cli::compare::run(args, ui),
+        Command::Experiment(args) => cli::experiment::run(args, ui),
+        Command::Render(args) => cli::render::run(args, ui),
+        Command::Filter(args) => cli::filter::run(args, ui),
+        Command::Edit(args) => cli::edit::run(args, ui),
         Command::View(args) => cli::view::run(args, ui),
     }
 }

@@ -2,17 +2,20 @@
 //! per vertex.
 
 use crate::simplify::collapse::CollapseTest;
-use crate::simplify::triangulate::EarClipper;
+use crate::simplify::hole::HoleFiller;
+use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, ShrinkingSurface, Star};
 use bitvec::vec::BitVec;
+use rayon::prelude::*;
 use std::collections::VecDeque;
 
 /// How a level is split into odd and even vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Partition {
-    /// The descriptor decides which vertices stay, the cost of coding which of the others go first,
-    /// and holes are triangulated so that they are cheap to code. The default.
+    /// The error against the original surface, weighed by the descriptor, decides which vertices
+    /// stay, the cost of coding which of the others go first; holes are closed by what lies close to
+    /// the surface and is cheap to code ([`Optimize`] weighs the two). The default.
     #[default]
     Balanced,
     /// Algorithm 1 to the letter: ascending descriptor, half-edge collapse along the shortest legal
@@ -42,45 +45,114 @@ pub(crate) struct Geometry<'a> {
     pub(crate) positions: &'a [[f64; 3]],
 }
 
-/// Share of the vertices, the most salient ones, that `Balanced` keeps at every level.
-const PROTECTED_SHARE: f64 = 0.05;
-/// Classes of saliency among the rest.
-const SALIENCY_CLASSES: f64 = 4.0;
-/// Valences that a class of saliency is worth.
-const CLASS_WEIGHT: f64 = 0.0;
-/// Largest valence that `Balanced` removes.
-const MAX_VALENCE: u32 = 6;
+/// What the balanced partition gives up for what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Optimize {
+    /// The smallest whole file.
+    Size,
+    /// Prefixes nearly as good as they get, for a file a little larger. The default.
+    #[default]
+    Balanced,
+    /// The best prefixes.
+    Prefix,
+}
+
+impl Optimize {
+    /// Every aim, in the order of their names in help texts.
+    pub const ALL: [Optimize; 3] = [Optimize::Size, Optimize::Balanced, Optimize::Prefix];
+
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Optimize::Size => "size",
+            Optimize::Balanced => "balanced",
+            Optimize::Prefix => "prefix",
+        }
+    }
+}
+
+/// How a level is thinned out.
+#[derive(Clone, Copy)]
+struct Thinning {
+    /// Share of the vertices, the most salient ones, that stay.
+    protected: f64,
+    /// Largest valence that goes.
+    max_valence: u32,
+    /// How much worse (squared distance) a hole may be closed to be cheaper to code.
+    tolerance: f64,
+}
+
+impl Thinning {
+    /// Most vertices come back in the finest levels: there the cost of coding counts, before that
+    /// the shape.
+    fn of(optimize: Optimize, is_fine: bool) -> Self {
+        match (optimize, is_fine) {
+            (Optimize::Size, _) => Self { protected: 0.0, max_valence: 6, tolerance: f64::INFINITY },
+            (Optimize::Balanced, true) => Self { protected: 0.1, max_valence: 6, tolerance: 8.0 },
+            (Optimize::Balanced, false) => Self { protected: 0.2, max_valence: 7, tolerance: 2.0 },
+            (Optimize::Prefix, _) => Self { protected: 0.2, max_valence: 7, tolerance: 1.0 },
+        }
+    }
+}
+
+/// Levels with more than this share of all vertices are fine.
+const FINE_SHARE: f64 = 0.5;
 
 /// Removes one level of odd vertices. `vertices` are those of the level and `scores` their
 /// descriptor values, in the same order.
 pub(crate) fn remove_level(
     partition: Partition,
+    optimize: Optimize,
     surface: &mut ShrinkingSurface,
     geometry: Geometry,
+    memory: &mut ErrorMemory,
     vertices: &[u32],
     scores: &[f64],
 ) -> LevelRecord {
-    let order = match partition {
-        Partition::Algorithm1 => by_score(vertices, scores),
-        Partition::Balanced => by_cost(surface, vertices, scores),
-    };
+    let is_fine = vertices.len() as f64 > FINE_SHARE * surface.surface.corner_of.len() as f64;
+    let thinning = Thinning::of(optimize, is_fine);
+    match partition {
+        Partition::Algorithm1 => {
+            let order = by_score(vertices, scores);
+            remove_in_order(surface, geometry, &order, None, Some(memory))
+        }
+        Partition::Balanced => {
+            let order = by_cost(surface, memory, vertices, scores, thinning);
+            remove_in_order(surface, geometry, &order, Some(thinning.tolerance), Some(memory))
+        }
+    }
+}
+
+/// Removes the vertices of `order` one after the other, unless a neighbour went before or no removal
+/// is legal: as Algorithm 1 does without a `tolerance`, else with the holes of [`HoleFiller`].
+/// `memory` is told.
+pub(crate) fn remove_in_order(
+    surface: &mut ShrinkingSurface,
+    geometry: Geometry,
+    order: &[u32],
+    tolerance: Option<f64>,
+    mut memory: Option<&mut ErrorMemory>,
+) -> LevelRecord {
     let mut tagged: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     let mut record = LevelRecord::default();
     let mut star = Star::default();
     let mut collapse = CollapseTest::default();
-    let mut clipper = EarClipper::default();
-    for vertex in order {
+    let mut filler = HoleFiller::default();
+    let Geometry { grid, positions } = geometry;
+    for &vertex in order {
         if tagged[vertex as usize] {
             continue;
         }
         surface.read_star(vertex, &mut star);
-        let clipped = match partition {
-            Partition::Algorithm1 => None,
-            Partition::Balanced => clipper.clip(surface, &star, geometry.grid),
+        let ears = match tolerance {
+            None => collapse.shortest_legal(surface, &star, grid, positions),
+            Some(tolerance) => filler.fill(surface, &star, grid, positions, tolerance),
         };
-        let ears =
-            clipped.or_else(|| collapse.shortest_legal(surface, &star, geometry.grid, geometry.positions));
         let Some(ears) = ears else { continue };
+        if let Some(memory) = &mut memory {
+            memory.hand_on(&star);
+        }
         let faces = surface.remove(&star, ears);
         record.push(vertex, &star.ring, faces);
         star.ring.iter().for_each(|&v| tagged.set(v as usize, true));
@@ -89,35 +161,58 @@ pub(crate) fn remove_level(
     record
 }
 
-/// Ascending score, ties by index.
-fn by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
-    let mut order: Vec<usize> = (0..vertices.len()).collect();
-    // Adding 0 makes −0 equal to 0.
-    order.sort_by(|&a, &b| {
-        (scores[a] + 0.0).total_cmp(&(scores[b] + 0.0)).then(vertices[a].cmp(&vertices[b]))
-    });
-    order.into_iter().map(|i| vertices[i]).collect()
+/// Ascending score, ties by index: the order of Algorithm 1.
+pub(crate) fn by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
+    places_by_score(vertices, scores).into_iter().map(|i| vertices[i as usize]).collect()
 }
 
-/// Low valence and low saliency first, ties along a walk over the surface; the most salient
-/// vertices and those of high valence are left out.
-fn by_cost(surface: &ShrinkingSurface, vertices: &[u32], scores: &[f64]) -> Vec<u32> {
-    let ranked = by_score(vertices, scores);
+/// The same as places in `vertices`.
+fn places_by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
+    order.sort_by(|&a, &b| {
+        let (a, b) = (a as usize, b as usize);
+        // Adding 0 makes −0 equal to 0.
+        (scores[a] + 0.0).total_cmp(&(scores[b] + 0.0)).then(vertices[a].cmp(&vertices[b]))
+    });
+    order
+}
+
+/// Low valence first, ties along a walk over the surface; the most salient vertices and those of
+/// high valence are left out. Saliency is the error of the best collapse, between half and twice as
+/// much by the rank of the descriptor.
+fn by_cost(
+    surface: &ShrinkingSurface,
+    memory: &ErrorMemory,
+    vertices: &[u32],
+    scores: &[f64],
+    thinning: Thinning,
+) -> Vec<u32> {
+    let mut free = vertices.to_vec();
+    if thinning.protected > 0.0 {
+        let saliency = saliency(surface, memory, vertices, scores);
+        free = by_score(vertices, &saliency);
+        free.truncate(((1.0 - thinning.protected) * free.len() as f64).ceil() as usize);
+    }
     let walk = breadth_first(surface, vertices);
-    let free = ((1.0 - PROTECTED_SHARE) * ranked.len() as f64).ceil();
-    let mut keyed: Vec<(u32, u32, u32)> = ranked
-        .iter()
-        .enumerate()
-        .take(free as usize)
-        .filter_map(|(rank, &v)| {
-            let valence = surface.surface.valence[v as usize];
-            let class = (rank as f64 / free * SALIENCY_CLASSES).floor();
-            let cost = 4.0 * (f64::from(valence) + CLASS_WEIGHT * class);
-            (valence <= MAX_VALENCE).then_some((cost as u32, walk[v as usize], v))
-        })
-        .collect();
-    keyed.sort_unstable();
-    keyed.into_iter().map(|(_, _, v)| v).collect()
+    let valence = |v: u32| surface.surface.valence[v as usize];
+    free.retain(|&v| valence(v) <= thinning.max_valence);
+    free.sort_unstable_by_key(|&v| (valence(v), walk[v as usize]));
+    free
+}
+
+/// Error of the best collapse of each vertex, weighed by the rank of its score.
+fn saliency(surface: &ShrinkingSurface, memory: &ErrorMemory, vertices: &[u32], scores: &[f64]) -> Vec<f64> {
+    const MIN_PARALLEL: usize = 2048;
+    let mut weight = vec![0.0_f64; vertices.len()];
+    for (rank, place) in places_by_score(vertices, scores).into_iter().enumerate() {
+        weight[place as usize] = (2.0 * rank as f64 / vertices.len() as f64 - 1.0).exp2();
+    }
+    let weighed = |star: &mut Star, (&v, weight): (&u32, f64)| {
+        surface.read_star(v, star);
+        weight * memory.least_error(star).0
+    };
+    let pairs = vertices.par_iter().zip(weight).with_min_len(MIN_PARALLEL);
+    pairs.map_init(Star::default, weighed).collect()
 }
 
 /// Position of each vertex in a breadth-first walk.

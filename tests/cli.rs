@@ -180,7 +180,7 @@ fn unknown_endings_are_named() {
     assert!(error_line(&stderr).starts_with("lwc: ball.gltf: ") && stderr.contains(".obj, .ply and .stl"));
     let stderr = workshop.fails("decode ball.lwc -o ball.glb", 2);
     assert!(error_line(&stderr).starts_with("lwc: ball.glb: ") && stderr.contains(".obj, .ply and .stl"));
-    let stderr = workshop.fails("describe ball.ply -o ball.png", 2);
+    let stderr = workshop.fails("describe ball.ply -o ball.txt", 2);
     assert!(error_line(&stderr).contains(".csv"));
     let stderr = workshop.fails("decode ball.lwc --format stl -o ball.obj", 2);
     assert!(error_line(&stderr).contains("--format"));

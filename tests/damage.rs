@@ -20,7 +20,7 @@ fn streams() -> Vec<(&'static str, Vec<u8>)> {
         let mut options = EncodeOptions::default();
         options.partition = partition;
         options.quantization = quantization;
-        options.steps_per_edge = 5.0;
+        options.steps_per_edge = Some(5.0);
         options.levels = Some(4);
         let stream = encode(&mesh, &options).unwrap().bytes;
         assert!((150..700).contains(&stream.len()), "{name}: {} bytes", stream.len());

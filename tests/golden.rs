@@ -195,8 +195,8 @@ mod make {
                 stream(&map_positions(noisy(grid(9, 8, bumpy), 6, 0.1), shift), |o| o.quantization = 30)
             }),
             ("one-bit", stream(&noisy(sphere(2), 7, 0.02), |o| o.quantization = 1)),
-            ("late-precision", stream(&torus, |o| o.steps_per_edge = 3.0)),
-            ("precision-at-once", stream(&torus, |o| o.steps_per_edge = 1e9)),
+            ("late-precision", stream(&torus, |o| o.steps_per_edge = Some(3.0))),
+            ("precision-at-once", stream(&torus, |o| o.steps_per_edge = Some(1e9))),
             ("algorithm1", {
                 stream(&noisy(sphere(2), 8, 0.02), |o| {
                     o.partition = Partition::Algorithm1;
@@ -209,7 +209,7 @@ mod make {
                 "flat-grid",
                 stream(&flat_grid(), |o| {
                     o.quantization = 10;
-                    o.steps_per_edge = 1.0;
+                    o.steps_per_edge = Some(1.0);
                 }),
             ),
             ("unknown-chunks", commented),

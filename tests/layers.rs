@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 15] = [
+const LAYERS: [(&str, &[&str]); 19] = [
     ("error", &[]),
     ("limits", &["error"]),
     ("lanes", &[]),
@@ -13,9 +13,11 @@ const LAYERS: [(&str, &[&str]); 15] = [
     ("mesh", &[]),
     ("io", &["mesh"]),
     ("metrics", &["mesh"]),
+    ("render", &["mesh"]),
     ("descriptors", &["mesh"]),
     ("lifting", &["lanes"]),
     ("simplify", &["mesh"]),
+    ("levels", &["mesh", "simplify"]),
     ("partition", &["mesh", "simplify"]),
     ("passes", &["bitstream", "lanes", "lifting", "mesh"]),
     ("decoder", &["bitstream", "error", "limits", "mesh", "passes"]),
@@ -26,6 +28,7 @@ const LAYERS: [(&str, &[&str]); 15] = [
             "decoder",
             "descriptors",
             "error",
+            "levels",
             "limits",
             "mesh",
             "partition",
@@ -33,6 +36,11 @@ const LAYERS: [(&str, &[&str]); 15] = [
             "simplify",
         ],
     ),
+    (
+        "decomposition",
+        &["decoder", "descriptors", "encoder", "error", "levels", "limits", "mesh", "partition", "simplify"],
+    ),
+    ("experiment", &["descriptors", "encoder", "error", "levels", "mesh", "partition", "simplify"]),
     // Reaches into everything, and is no part of the library.
     (
         "fuzzing",

@@ -193,7 +193,7 @@ fn options(partition: Partition, descriptor: Descriptor, levels: u32) -> EncodeO
     options.levels = Some(levels);
     options.quantization = PRECISION;
     // Every level at full precision, so that cells tell vertices apart.
-    options.steps_per_edge = 1e9;
+    options.steps_per_edge = Some(1e9);
     options
 }
 

@@ -72,7 +72,7 @@ fn every_window_and_schedule_returns() {
         options.window.rings = rings;
         options.window.radius = radius;
         options.growth = growth;
-        options.steps_per_edge = steps_per_edge;
+        options.steps_per_edge = Some(steps_per_edge);
         assert_round_trip(&mesh, &options, &format!("{options:?}"));
     }
 }
@@ -115,7 +115,7 @@ fn an_option_out_of_range_is_an_error() {
         ("radius", |o| o.window.radius = f64::NAN),
         ("radius", |o| o.window.radius = 0.0),
         ("growth", |o| o.growth = 0.5),
-        ("steps per edge", |o| o.steps_per_edge = f64::INFINITY),
+        ("steps per edge", |o| o.steps_per_edge = Some(f64::INFINITY)),
     ];
     for (name, change) in changes {
         let mut options = EncodeOptions::default();

@@ -9,7 +9,7 @@ use common::valid::assert_valid;
 use common::*;
 use lwc::{
     DecodeError, DecodeOptions, Decoder, EncodeOptions, LevelMesh, Limits, Partition, PassInfo, PassKind,
-    StreamInfo, Update, decode, encode,
+    StreamInfo, TriMesh, Update, decode, encode,
 };
 
 /// Streams with splits inside and on the boundary, ears, several components, and refinements between
@@ -28,7 +28,7 @@ fn streams() -> Vec<(&'static str, Vec<u8>)> {
         let mut options = EncodeOptions::default();
         options.partition = partition;
         options.quantization = quantization;
-        options.steps_per_edge = 6.0;
+        options.steps_per_edge = Some(6.0);
         cases.push((name, encode(&mesh, &options).unwrap().bytes));
     }
     cases
@@ -81,11 +81,12 @@ fn the_streams_of_these_tests_have_all_kinds_of_passes() {
 }
 
 #[test]
-fn every_prefix_is_the_mesh_of_its_last_complete_pass() {
+fn every_prefix_is_the_mesh_of_its_last_complete_pass_and_more_in_a_preview() {
     for (name, stream) in streams() {
         let steps = steps(&stream);
         let info = info_of(&stream);
         let mut last = (0, 0);
+        let mut num_previews = 0;
         for length in 0..=stream.len() {
             let prefix = &stream[..length];
             let done = info.passes().iter().filter(|p| p.end <= length as u64).count();
@@ -94,6 +95,7 @@ fn every_prefix_is_the_mesh_of_its_last_complete_pass() {
             assert_eq!((updates.len(), decoder.passes_done()), (done, done), "{name}, {length} bytes");
             assert_eq!(decoder.is_complete(), length == stream.len(), "{name}, {length} bytes");
             let one_shot = decode(prefix, DecodeOptions::new());
+            let preview = decoder.preview();
             match decoder.mesh() {
                 None => assert_eq!((done, one_shot), (0, Err(DecodeError::NoMesh)), "{name}, {length} bytes"),
                 Some(mesh) => {
@@ -101,9 +103,27 @@ fn every_prefix_is_the_mesh_of_its_last_complete_pass() {
                     assert!(counts.0 >= last.0 && counts.1 >= last.1, "{name}, {length} bytes");
                     last = counts;
                     assert_eq!(Copied::from(mesh), steps[done - 1].1, "{name}, {length} bytes");
-                    assert_eq!(one_shot.unwrap(), mesh.to_tri_mesh(), "{name}, {length} bytes");
+                    let preview = preview.unwrap();
+                    assert_eq!(one_shot.unwrap(), preview, "{name}, {length} bytes");
+                    let after = &steps[done.min(steps.len() - 1)].1;
+                    assert_lies_between(&preview, mesh, after, &format!("{name}, {length} bytes"));
+                    num_previews += usize::from(preview != mesh.to_tri_mesh());
                 }
             }
+        }
+        assert!(10 * num_previews > stream.len(), "{name}: {num_previews} bytes make a difference");
+    }
+}
+
+/// A preview is a surface with vertices of the next mesh only: those it shares with the last complete
+/// one where they are or one bit finer, and new ones in place.
+fn assert_lies_between(preview: &TriMesh, last: LevelMesh, next: &Copied, what: &str) {
+    assert!((last.num_vertices()..=next.cells.len()).contains(&preview.num_vertices()), "{what}");
+    assert!((last.num_triangles()..=next.triangles.len()).contains(&preview.num_triangles()), "{what}");
+    let mut edges = std::collections::HashSet::new();
+    for t in preview.triangles() {
+        for i in 0..3 {
+            assert!(edges.insert((t[i], t[(i + 1) % 3])), "{what}: an edge twice");
         }
     }
 }

@@ -61,6 +61,15 @@ pub(crate) fn parse(bytes: &[u8]) -> Frame<'_> {
     }
 }
 
+/// Kind and payload so far of the incomplete chunk that `bytes` begin with.
+pub(crate) fn parse_cut(bytes: &[u8]) -> Option<(u8, &[u8])> {
+    let (&kind, rest) = bytes.split_first()?;
+    let mut reader = Reader::new(rest);
+    let length = reader.varint()? as usize;
+    let payload = &bytes[1 + varint_size(length as u32)..];
+    Some((kind, &payload[..payload.len().min(length)]))
+}
+
 pub(crate) fn varint_size(value: u32) -> usize {
     (32 - (value | 1).leading_zeros() as usize).div_ceil(7)
 }
@@ -88,6 +97,9 @@ mod tests {
             write(&mut bytes, kind::SPLIT, &payload);
             for cut in 0..bytes.len() {
                 assert!(matches!(parse(&bytes[..cut]), Frame::Incomplete { needed } if needed > cut));
+                let head = bytes.len() - CHECKSUM_BYTES - length;
+                let so_far = &payload[..cut.saturating_sub(head).min(length)];
+                assert_eq!(parse_cut(&bytes[..cut]), (cut >= head).then_some((kind::SPLIT, so_far)));
             }
             bytes.push(99);
             let Frame::Chunk { kind, payload: read, size, intact } = parse(&bytes) else { panic!() };

@@ -60,6 +60,7 @@ const fn reciprocals() -> [u32; 1024] {
 static RECIPROCALS: [u32; 1024] = reciprocals();
 
 /// A binary decision with `C` contexts and up to `LANES − 1 − C` direct inputs.
+#[derive(Clone)]
 pub(crate) struct MixedBit<const C: usize> {
     /// Counters of all contexts, one run of `sizes[i]` after the other.
     counters: Vec<Counter>,
@@ -139,6 +140,7 @@ impl<const C: usize> MixedBit<C> {
 }
 
 /// Adaptive bits of one context each, for syntax that is too rare to deserve a mixer.
+#[derive(Clone)]
 pub(crate) struct PlainBits {
     counters: Vec<Counter>,
 }

@@ -13,6 +13,16 @@ pub(crate) trait BitCoder {
     /// Codes one bit, `p1` = probability of a one in 1/65536, within 1..=65535.
     fn code(&mut self, bit: bool, p1: u32) -> bool;
 
+    /// True if what is read was not written: a payload ends too early.
+    fn is_exhausted(&self) -> bool {
+        false
+    }
+
+    /// True if a payload was cut and bits are guessed from here on.
+    fn is_guessing(&self) -> bool {
+        false
+    }
+
     /// Codes the lowest `count` bits of `value`, most significant first, each with probability ½.
     fn code_raw(&mut self, value: u32, count: u32) -> u32 {
         (0..count).rev().fold(0, |read, shift| {
@@ -99,21 +109,24 @@ pub(crate) struct RangeDecoder<'a> {
     range: u32,
     bytes: &'a [u8],
     next: usize,
+    /// Bytes that may be read.
+    end: usize,
+    is_cut: bool,
 }
 
 impl<'a> RangeDecoder<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
-        let mut decoder = Self { code: 0, range: u32::MAX, bytes, next: 0 };
+        let end = bytes.len() + MAX_MISSING_ZEROS;
+        let mut decoder = Self { code: 0, range: u32::MAX, bytes, next: 0, end, is_cut: false };
         for _ in 0..4 {
             decoder.code = decoder.code << 8 | decoder.next_byte();
         }
         decoder
     }
 
-    /// True when more has been read than the payload and the zeros that may follow it could hold:
-    /// the payload was not made by an encoder.
-    pub(crate) fn is_exhausted(&self) -> bool {
-        self.next > self.bytes.len() + MAX_MISSING_ZEROS
+    /// Reads the beginning of a payload; bits that the missing bytes decide are the likelier ones.
+    pub(crate) fn of_cut(bytes: &'a [u8]) -> Self {
+        Self { end: bytes.len(), is_cut: true, ..Self::new(bytes) }
     }
 
     #[inline]
@@ -125,8 +138,19 @@ impl<'a> RangeDecoder<'a> {
 }
 
 impl BitCoder for RangeDecoder<'_> {
+    fn is_exhausted(&self) -> bool {
+        !self.is_cut && self.next > self.end
+    }
+
+    fn is_guessing(&self) -> bool {
+        self.is_cut && self.next > self.end
+    }
+
     #[inline]
     fn code(&mut self, _: bool, p1: u32) -> bool {
+        if self.is_guessing() {
+            return p1 > PROBABILITY_ONE / 2;
+        }
         let bound = split(self.range, p1);
         let bit = self.code < bound;
         if bit {

@@ -39,6 +39,7 @@ pub(crate) struct Expectation {
 }
 
 /// Adaptive models of residuals.
+#[derive(Clone)]
 pub(crate) struct ResidualModel {
     zero: MixedBit<3>,
     sign: MixedBit<2>,

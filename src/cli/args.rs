@@ -4,7 +4,7 @@ use super::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Parser, Subcommand, value_parser};
 use lwc::descriptors::{Descriptor, Window};
-use lwc::{EncodeOptions, Limits, Partition};
+use lwc::{EncodeOptions, Limits, Optimize, Partition};
 use std::path::PathBuf;
 
 /// Progressive codec for triangle meshes: one small file that can be cut anywhere.
@@ -40,6 +40,10 @@ pub enum Command {
     Info(Info),
     Describe(Describe),
     Compare(Compare),
+    Experiment(super::experiment::args::Experiment),
+    Render(super::render::args::Render),
+    Filter(super::filter::Filter),
+    Edit(super::edit::Edit),
     View(View),
 }
 
@@ -74,15 +78,23 @@ pub struct Encode {
     pub growth: f64,
     /// How the vertices that a level removes are chosen.
     ///
-    /// - balanced: the descriptor says which vertices stay, the cost of coding which others go
+    /// - balanced: error and descriptor say which vertices stay, the cost of coding which others go
     /// - algorithm1: the paper's Algorithm 1 to the letter
     #[arg(long, value_name = "NAME", verbatim_doc_comment)]
     #[arg(default_value = EncodeOptions::default().partition.name(), value_parser = partition_parser())]
     pub partition: Partition,
-    /// Grid steps to the mean edge of a level, 0.5 to 1e9: fewer favour short prefixes.
-    #[arg(long, value_name = "STEPS", default_value_t = EncodeOptions::default().steps_per_edge)]
+    /// What the balanced partition aims at.
+    ///
+    /// - size: the smallest whole file
+    /// - balanced: prefixes nearly as good as they get, for a file a little larger
+    /// - prefix: the best prefixes
+    #[arg(long, value_name = "AIM", verbatim_doc_comment)]
+    #[arg(default_value = EncodeOptions::default().optimize.name(), value_parser = optimize_parser())]
+    pub optimize: Optimize,
+    /// Grid steps to the mean edge of a level, 0.5 to 1e9 [default: by the error of each level].
+    #[arg(long, value_name = "STEPS")]
     #[arg(allow_negative_numbers = true, value_parser = quantity::number(0.5, 1e9))]
-    pub steps_per_edge: f64,
+    pub steps_per_edge: Option<f64>,
     /// Decode the stream and compare it with the mesh before it is written.
     #[arg(long)]
     pub verify: bool,
@@ -173,12 +185,18 @@ pub struct Info {
     /// Print one JSON object.
     #[arg(long)]
     pub json: bool,
+    /// Draw the distance from the finest mesh over the bytes read, as .svg or .png. Decodes the stream.
+    #[arg(long, value_name = "FILE", conflicts_with = "json")]
+    pub plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub limits: LimitArgs,
 }
 
 /// Evaluate a descriptor at every vertex of a mesh.
 ///
-/// Writes the header `vertex,value` and one line per vertex, in the order of the file, with all digits.
-/// Vertices without faces have the value 0.
+/// As CSV: the header `vertex,value` and one line per vertex, in the order of the file, with all digits.
+/// As PNG: a picture coloured by the values, with a legend. As PLY: the mesh with the same colours at its
+/// vertices. Vertices without faces have the value 0.
 #[derive(Debug, clap::Args)]
 pub struct Describe {
     /// Mesh to describe.
@@ -186,9 +204,13 @@ pub struct Describe {
     pub input: PathBuf,
     #[command(flatten)]
     pub scale: Scale,
-    /// Table to write (.csv), `-` for standard output.
+    /// Table (.csv), picture (.png) or coloured mesh (.ply) to write, `-` for a table on standard output.
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub heat: super::render::args::HeatArgs,
+    #[command(flatten)]
+    pub picture: super::render::args::Picture,
 }
 
 /// Measure the distance between two surfaces.
@@ -245,7 +267,7 @@ fn levels(text: &str) -> Result<Levels, String> {
     }
 }
 
-fn descriptor_parser() -> impl TypedValueParser<Value = Descriptor> {
+pub fn descriptor_parser() -> impl TypedValueParser<Value = Descriptor> {
     PossibleValuesParser::new(Descriptor::ALL.map(Descriptor::name))
         .try_map(|name| name.parse::<Descriptor>())
 }
@@ -253,6 +275,11 @@ fn descriptor_parser() -> impl TypedValueParser<Value = Descriptor> {
 fn partition_parser() -> impl TypedValueParser<Value = Partition> {
     PossibleValuesParser::new(Partition::ALL.map(Partition::name))
         .try_map(|name| Partition::ALL.into_iter().find(|p| p.name() == name).ok_or("unknown partition"))
+}
+
+fn optimize_parser() -> impl TypedValueParser<Value = Optimize> {
+    PossibleValuesParser::new(Optimize::ALL.map(Optimize::name))
+        .try_map(|name| Optimize::ALL.into_iter().find(|o| o.name() == name).ok_or("unknown aim"))
 }
 
 fn format_parser() -> impl TypedValueParser<Value = lwc::io::Format> {

@@ -65,7 +65,7 @@ fn default_output(stream: &Path, level: Option<u32>, format: Format) -> PathBuf 
     with_ending(model, &format!("{what}.{}", format.extension()))
 }
 
-/// The mesh of a stream without fault; with `--salvage` the finest that came before the fault.
+/// The mesh of a stream without fault, as far as it goes; with `--salvage` the finest that came before the fault.
 fn sound_mesh(
     decoder: &Decoder,
     error: Option<DecodeError>,
@@ -73,16 +73,15 @@ fn sound_mesh(
     name: &str,
     ui: &Ui,
 ) -> Result<TriMesh, DecodeError> {
-    let mesh = decoder.mesh().map(|mesh| mesh.to_tri_mesh());
-    match (error, mesh) {
+    match (error, decoder.mesh()) {
         (Some(error), Some(mesh)) if args.salvage => {
             ui.warn(name, &format!("{error}; salvaged {}", reached(decoder).unwrap_or_default()));
-            Ok(mesh)
+            Ok(mesh.to_tri_mesh())
         }
         (Some(error), _) => Err(error),
-        (None, mesh) => {
+        (None, _) => {
             note_if_incomplete(decoder, args.bytes, name, ui);
-            mesh.ok_or(DecodeError::NoMesh)
+            decoder.preview().ok_or(DecodeError::NoMesh)
         }
     }
 }

@@ -1,20 +1,23 @@
-//! `lwc describe`: a descriptor at every vertex.
+//! `lwc describe`: a descriptor at every vertex, as numbers or colours.
 
 use super::args::Describe;
 use super::exit::Failure;
 use super::input::read_mesh;
 use super::output::Destination;
+use super::render::{has_ending, heat_picture};
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::descriptors::{evaluate_with_progress, mean_edge_length};
+use lwc::render::{Heat, sequential};
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Reads, evaluates, writes a table.
+/// Reads, evaluates, writes.
 pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
     let destination = Destination::new(args.output.clone());
     check_ending(&destination).with_context(|| destination.name())?;
-    destination.check(Some(&args.input), true)?;
+    let is_text = matches!(Kind::of(&destination), Some(Kind::Table));
+    destination.check(Some(&args.input), is_text)?;
 
     let mesh = read_mesh(&args.input, ui)?.mesh;
     let mean_edge = mean_edge_length(&mesh);
@@ -28,16 +31,41 @@ pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
         evaluate_with_progress(args.scale.descriptor, &mesh, &args.scale.window(), mean_edge, &progress)
     };
     ui.detail(&args.input.display().to_string(), &format!("mean edge length {mean_edge}"));
-    destination.write(|out| write_csv(out, &values))
+    match Kind::of(&destination) {
+        Some(Kind::Picture) => {
+            let picture =
+                heat_picture(&mesh, &values, args.scale.descriptor.name(), &args.heat, &args.picture)?;
+            destination.write(|out| picture.write_png(out))
+        }
+        Some(Kind::Mesh) => {
+            let heat = Heat::new(&values, args.heat.clip);
+            let colours: Vec<[u8; 3]> = heat.values.iter().map(|&value| sequential(value)).collect();
+            destination.write(|out| lwc::io::write_ply_coloured(out, &mesh, &colours))
+        }
+        _ => destination.write(|out| write_csv(out, &values)),
+    }
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Table,
+    Picture,
+    Mesh,
+}
+
+impl Kind {
+    /// By the ending; standard output gets a table.
+    fn of(destination: &Destination) -> Option<Self> {
+        let Destination::File(path) = destination else { return Some(Self::Table) };
+        let endings = [("csv", Self::Table), ("png", Self::Picture), ("ply", Self::Mesh)];
+        endings.into_iter().find(|(ending, _)| has_ending(path, ending)).map(|(_, kind)| kind)
+    }
 }
 
 fn check_ending(destination: &Destination) -> Result<(), Failure> {
-    match destination {
-        Destination::File(path) if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) => {
-            Err(Failure::Usage("unknown ending; descriptors are written as .csv only".into()))
-        }
-        _ => Ok(()),
-    }
+    let unknown = || Failure::Usage("unknown ending; descriptors are written as .csv, .png or .ply".into());
+    Kind::of(destination).map(|_| ()).ok_or_else(unknown)
 }
 
 fn write_csv(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {

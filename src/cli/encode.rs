@@ -23,6 +23,7 @@ impl Encode {
         options.quantization = self.quantization;
         options.levels = self.levels.0;
         options.partition = self.partition;
+        options.optimize = self.optimize;
         options.steps_per_edge = self.steps_per_edge;
         options
     }
@@ -169,6 +170,7 @@ impl Report<'_> {
             "radius": args.scale.radius,
             "growth": args.growth,
             "partition": args.partition.name(),
+            "optimize": args.optimize.name(),
             "steps_per_edge": args.steps_per_edge,
             "read_seconds": self.read_seconds,
             "encode_seconds": self.encode_seconds,

@@ -1,6 +1,7 @@
 //! How the program ends: one sentence on standard error, and a number.
 
 use super::ui::Ui;
+use lwc::decomposition::EditError;
 use lwc::io::{ReadError, WriteError};
 use lwc::{DecodeError, EncodeError};
 use std::io;
@@ -78,6 +79,13 @@ fn code(error: &anyhow::Error) -> u8 {
             _ => OTHER,
         }))
         .or(cause.downcast_ref().map(|_: &lwc::metrics::CompareError| INPUT))
+        .or(cause.downcast_ref().map(|error| match error {
+            EditError::Stream(DecodeError::Limit { .. }) => LIMIT,
+            EditError::Stream(DecodeError::NotAStream | DecodeError::Unsupported(_)) => INPUT,
+            EditError::Stream(_) | EditError::Incomplete => DAMAGED,
+            _ => INPUT,
+        }))
+        .or(cause.downcast_ref().map(|_: &lwc::render::RenderError| USAGE))
     };
     error.chain().find_map(code).unwrap_or(OTHER)
 }

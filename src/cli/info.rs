@@ -5,6 +5,8 @@ use super::exit::Failure;
 use super::input::StreamSource;
 use super::output::print_json;
 use super::passes;
+use super::rate_distortion;
+use super::ui::Ui;
 use anyhow::Context;
 use lwc::descriptors::Descriptor;
 use lwc::{Partition, StreamInfo};
@@ -12,7 +14,10 @@ use serde_json::{Value, json};
 use std::io::{self, BufWriter, Read, Write};
 
 /// Reads up to the table of passes, counts the bytes behind it, reports.
-pub fn run(args: &Info) -> anyhow::Result<()> {
+pub fn run(args: &Info, ui: &Ui) -> anyhow::Result<()> {
+    if let Some(plot) = &args.plot {
+        return rate_distortion::run(args, plot, ui);
+    }
     let source = StreamSource::new(args.input.as_deref())?;
     let mut reader = source.open()?;
     let (info, present) = read(&mut *reader).with_context(|| source.name())?;

@@ -50,9 +50,9 @@ pub fn read_mesh_or_stream(path: &Path, limits: lwc::Limits, ui: &Ui) -> anyhow:
     if let Some(error) = error {
         return Err(error).with_context(|| source.name());
     }
-    let mesh = decoder.mesh().ok_or(DecodeError::NoMesh).with_context(|| source.name())?;
+    let mesh = decoder.preview().ok_or(DecodeError::NoMesh).with_context(|| source.name())?;
     note_if_incomplete(&decoder, None, &source.name(), ui);
-    Ok(mesh.to_tri_mesh())
+    Ok(mesh)
 }
 
 /// Where a stream comes from.

@@ -74,6 +74,13 @@ impl Ui {
         self.visible_bar(stage, style.unwrap_or_else(|_| ProgressStyle::default_bar()))
     }
 
+    /// As [`Ui::bar`], with an estimate of the time left.
+    pub fn bar_with_time_left(&self, stage: &'static str) -> Bar {
+        let template = "{msg:>10} [{bar:32}] {percent:>3} %  {elapsed}, {eta} left";
+        let style = ProgressStyle::with_template(template);
+        self.visible_bar(stage, style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    }
+
     /// For work that does not say how far it is.
     pub fn spinner(&self, stage: &'static str) -> Bar {
         let bar = self.visible_bar(stage, ProgressStyle::default_spinner());
@@ -100,6 +107,11 @@ impl Bar {
     pub fn set(&self, fraction: f64) {
         // Far fewer calls than positions reach the terminal, indicatif sees to that.
         self.0.set_position((fraction.clamp(0.0, 1.0) * FULL as f64) as u64);
+    }
+
+    /// Takes the bar away while `write` writes.
+    pub fn suspend<T>(&self, write: impl FnOnce() -> T) -> T {
+        self.0.suspend(write)
     }
 
     pub fn set_stage(&self, stage: &'static str, fraction: f64) {

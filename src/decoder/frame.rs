@@ -186,6 +186,11 @@ impl FrameReader {
         }
     }
 
+    /// Kind and payload so far of the chunk that is not complete yet.
+    pub(super) fn cut_chunk(&self) -> Option<(u8, &[u8])> {
+        chunk::parse_cut(&self.buffer[self.read..])
+    }
+
     fn read_signature(&mut self) -> Result<bool, DecodeError> {
         let there = self.buffer.len().min(chunk::SIGNATURE.len());
         if self.buffer[..there] != chunk::SIGNATURE[..there] {

@@ -1,18 +1,19 @@
 //! One pass after the other, applied to the mesh.
 
-use super::frame::PassInfo;
+use super::frame::{PassInfo, PassKind};
 use crate::DecodeError;
 use crate::bitstream::header::Action;
-use crate::bitstream::range_coder::RangeDecoder;
+use crate::bitstream::range_coder::{BitCoder, RangeDecoder};
 use crate::limits::Limits;
 use crate::mesh::Surface;
 use crate::passes::connectivity::{self, ConnectivityModels};
 use crate::passes::coordinates::{self, CoordinateModels};
-use crate::passes::patch::StarBuilder;
+use crate::passes::patch::{Patches, StarBuilder};
 use crate::passes::refine::{self, RefineModels};
-use crate::passes::{GridMesh, Malformed, base};
+use crate::passes::{EXHAUSTED, GridMesh, Malformed, base};
 
 /// The mesh and all that is learnt about it.
+#[derive(Clone)]
 pub(super) struct PassDecoder {
     pub(super) mesh: GridMesh,
     connectivity: ConnectivityModels,
@@ -79,6 +80,32 @@ impl PassDecoder {
         }
     }
 
+    /// The mesh with the beginning of a pass: a split brings back the vertices whose coordinates are
+    /// there, a refinement guesses the bits that are missing. `None` if the bytes tell nothing.
+    pub(super) fn mesh_with_cut(&self, pass: &PassInfo, payload: &[u8]) -> Option<GridMesh> {
+        let mut coder = RangeDecoder::of_cut(payload);
+        let mut ahead = self.clone();
+        match pass.kind {
+            PassKind::Base => None,
+            PassKind::Refine => {
+                refine::code(&mut coder, &mut ahead.refine, &mut ahead.mesh, None);
+                Some(ahead.mesh)
+            }
+            PassKind::Split => {
+                // All of the connectivity is needed to read the coordinates, not to show them.
+                let patches = ahead.read_split(&mut coder, pass).ok()?;
+                let (first, count) = (self.mesh.positions.len(), ahead.mesh.positions.len());
+                let mut mesh = self.mesh.clone();
+                let mut builder = StarBuilder::new(first);
+                for patch in 0..count - first {
+                    builder.restore(&mut mesh.surface, &patches, patch).ok()?;
+                }
+                mesh.positions.extend_from_slice(&ahead.mesh.positions[first..]);
+                Some(mesh)
+            }
+        }
+    }
+
     fn split(&mut self, coder: &mut RangeDecoder, pass: &PassInfo) -> Result<Changes, Malformed> {
         let before = self.mesh.surface.triangles.clone();
         let num_coarse = self.mesh.positions.len();
@@ -94,19 +121,8 @@ impl PassDecoder {
     }
 
     fn try_split(&mut self, coder: &mut RangeDecoder, pass: &PassInfo) -> Result<Changes, Malformed> {
-        let count = pass.row.vertices as usize;
-        let mesh = &mut self.mesh;
-        let (first_vertex, first_face) = (mesh.positions.len(), mesh.surface.triangles.len());
-        let patches = connectivity::code(coder, &mut self.connectivity, mesh, count, None)?;
-        if patches.num_new_faces() != pass.row.faces as usize {
-            return Err(Malformed("a level has other faces than announced"));
-        }
-        mesh.reserve(count, pass.row.faces as usize);
-        let mut builder = StarBuilder::new(first_vertex);
-        for patch in 0..patches.len() {
-            builder.restore(&mut mesh.surface, &patches, patch)?;
-        }
-        coordinates::code(coder, &mut self.coordinates, mesh, &patches, pass.precision, None)?;
+        let (first_vertex, first_face) = (self.mesh.positions.len(), self.mesh.surface.triangles.len());
+        let patches = self.read_split(coder, pass)?;
         check_end(coder)?;
         Ok(Changes {
             first_vertex: first_vertex as u32,
@@ -114,10 +130,27 @@ impl PassDecoder {
             first_new_face: first_face as u32,
         })
     }
+
+    /// Connectivity, stars, coordinates; of a cut payload as many coordinates as there are.
+    fn read_split(&mut self, coder: &mut RangeDecoder, pass: &PassInfo) -> Result<Patches, Malformed> {
+        let count = pass.row.vertices as usize;
+        let mesh = &mut self.mesh;
+        let patches = connectivity::code(coder, &mut self.connectivity, mesh, count, None)?;
+        if patches.num_new_faces() != pass.row.faces as usize {
+            return Err(Malformed("a level has other faces than announced"));
+        }
+        let mut builder = StarBuilder::new(mesh.positions.len());
+        mesh.reserve(count, pass.row.faces as usize);
+        for patch in 0..patches.len() {
+            builder.restore(&mut mesh.surface, &patches, patch)?;
+        }
+        coordinates::code(coder, &mut self.coordinates, mesh, &patches, pass.precision, None)?;
+        Ok(patches)
+    }
 }
 
 fn check_end(coder: &RangeDecoder) -> Result<(), Malformed> {
-    if coder.is_exhausted() { Err(Malformed("a pass needs more bytes than it has")) } else { Ok(()) }
+    if coder.is_exhausted() { Err(Malformed(EXHAUSTED)) } else { Ok(()) }
 }
 
 /// Checks a pass against the limits before anything is allocated for it.

@@ -6,6 +6,7 @@ use super::passes::{self, PassDecoder};
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::{Grid, Provenance};
 use crate::limits::Limits;
+use crate::passes::GridMesh;
 use crate::{DecodeError, TriMesh};
 use std::ops::Range;
 
@@ -203,6 +204,35 @@ impl Decoder {
         })
     }
 
+    /// The mesh so far, with what has arrived of the next pass: vertices whose bytes are missing stay
+    /// away, missing bits of coordinates are guessed. Nearly as good as if the stream were cut behind every
+    /// vertex, but made of bytes whose checksum has not come yet, and of a copy of the mesh.
+    ///
+    /// `None` before the base mesh is complete. Without such bytes, or without the memory, it is
+    /// [`Decoder::mesh`].
+    pub fn preview(&self) -> Option<TriMesh> {
+        let complete = self.mesh()?;
+        let Some((pass, mesh)) = self.mesh_with_cut() else {
+            return Some(complete.to_tri_mesh());
+        };
+        Some(LevelMesh { mesh: &mesh, precision: pass.precision, ..complete }.to_tri_mesh())
+    }
+
+    fn mesh_with_cut(&self) -> Option<(&PassInfo, GridMesh)> {
+        let pass = self.next_pass()?;
+        let (kind, payload) = self.frames.cut_chunk()?;
+        // The coder reads four bytes ahead: fewer decide nothing.
+        let is_next =
+            kind == frame::kind_of(pass.kind) && (5..=pass.row.bytes as usize).contains(&payload.len());
+        if self.failed || !is_next {
+            return None;
+        }
+        // Two copies that take as much again as the mesh itself.
+        let buffered = self.frames.buffered() as u64 + 2 * passes::memory_for(pass);
+        passes::check_limits(pass, &self.limits, buffered as usize).ok()?;
+        Some((pass, self.passes.mesh_with_cut(pass, payload)?))
+    }
+
     /// Number of passes applied.
     pub fn passes_done(&self) -> usize {
         self.done
@@ -256,12 +286,12 @@ impl DecodeOptions {
 
 /// Decodes a stream, or what there is of it, in one call.
 ///
-/// A stream that ends early gives the mesh of its last complete pass.
+/// A stream that ends early gives all that its bytes tell, see [`Decoder::preview`].
 ///
 /// # Errors
 /// If the stream is damaged, beyond the limits, or ends before its base mesh.
 pub fn decode(bytes: &[u8], options: DecodeOptions) -> Result<TriMesh, DecodeError> {
     let mut decoder = Decoder::with_options(options);
     decoder.push(bytes)?;
-    decoder.mesh().map(|m| m.to_tri_mesh()).ok_or(DecodeError::NoMesh)
+    decoder.preview().ok_or(DecodeError::NoMesh)
 }

@@ -26,13 +26,15 @@ mod paraboloid;
 mod pca;
 mod pca_qem;
 mod quadric;
+mod readings;
 mod scale;
 mod shape_index;
 mod sqem;
 mod surface;
-mod symmetric;
+pub(crate) mod symmetric;
 mod window;
 
+pub use readings::{NormalWeights, PcaQuadric, Readings};
 pub use window::Window;
 
 use surface::Surface;
@@ -138,8 +140,20 @@ pub fn evaluate_with_progress(
     mean_edge: f64,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Vec<f64> {
+    evaluate_reading(descriptor, mesh, window, mean_edge, Readings::default(), progress)
+}
+
+/// As [`evaluate_with_progress`], with another reading of the paper.
+pub fn evaluate_reading(
+    descriptor: Descriptor,
+    mesh: &TriMesh,
+    window: &Window,
+    mean_edge: f64,
+    readings: Readings,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Vec<f64> {
     let usable = window.radius > 0.0 && mean_edge > 0.0 && mean_edge.is_finite();
-    let Some(surface) = usable.then(|| Surface::new(mesh, mean_edge)).flatten() else {
+    let Some(surface) = usable.then(|| Surface::new(mesh, mean_edge, readings.normals)).flatten() else {
         progress(mesh.num_vertices());
         return vec![0.0; mesh.num_vertices()];
     };
@@ -150,7 +164,7 @@ pub fn evaluate_with_progress(
         Descriptor::ShapeIndex => shape_index::evaluate(&surface, window, progress),
         Descriptor::Harris3d => harris3d::evaluate(&surface, window, progress),
         Descriptor::Sqem => sqem::evaluate(&surface, window, progress),
-        Descriptor::PcaQem => pca_qem::evaluate(&surface, window, progress),
+        Descriptor::PcaQem => pca_qem::evaluate(&surface, window, readings.pca_quadric, progress),
     };
     let mut values = surface.in_mesh_order(&values);
     for value in &mut values {
@@ -158,4 +172,18 @@ pub fn evaluate_with_progress(
         *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };
     }
     values
+}
+
+/// Mean number of vertices in a window, the centre included, over the vertices that have neighbours.
+///
+/// `window` and `mean_edge` as in [`evaluate`]; 0 where that gives zeros. Runs on the current rayon pool.
+pub fn mean_window_size(mesh: &TriMesh, window: &Window, mean_edge: f64) -> f64 {
+    let usable = window.radius > 0.0 && mean_edge > 0.0 && mean_edge.is_finite();
+    let Some(surface) = usable.then(|| Surface::new(mesh, mean_edge, NormalWeights::default())).flatten()
+    else {
+        return 0.0;
+    };
+    let sizes = window::map_windows(&surface, window, &|_| (), |local| local.len());
+    let windows = sizes.iter().filter(|&&size| size > 0).count();
+    sizes.iter().sum::<usize>() as f64 / windows.max(1) as f64
 }

@@ -25,3 +25,14 @@ pub(super) fn mean_error(local: &LocalWindow, matrices: &[Sym3]) -> f64 {
     }
     (a.inner(&second) + 2.0 * b.dot(first) + c * weights) / (weights * weights)
 }
+
+/// D = (1/S) Σ w (u,1)ᵀ Q_v (u,1) with the quadric of the centre alone.
+pub(super) fn own_error(local: &LocalWindow, matrices: &[Sym3]) -> f64 {
+    let metric = &matrices[local.members()[0] as usize];
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for (_, d, weight) in local.weighted() {
+        sum += weight * metric.times(d).dot(d);
+        weights += weight;
+    }
+    sum / weights
+}

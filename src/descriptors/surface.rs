@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::adjacency::Adjacency;
 use super::locality::morton_order;
+use super::readings::NormalWeights;
 use super::scale::{exponent, times_power_of_two};
 use crate::mesh::TriMesh;
 
@@ -33,7 +34,7 @@ pub(super) struct Surface {
 
 impl Surface {
     /// `None` if l̄ vanishes beside the coordinates, or there are no edges.
-    pub(super) fn new(mesh: &TriMesh, mean_edge: f64) -> Option<Self> {
+    pub(super) fn new(mesh: &TriMesh, mean_edge: f64, normals: NormalWeights) -> Option<Self> {
         let mut triangles = proper_triangles(mesh);
         let (low, high) = bounding_box(mesh, &triangles)?;
         // l̄ goes to [1, 2), less if coordinates would overflow. Differences may still become infinite
@@ -59,7 +60,7 @@ impl Surface {
             .collect();
         let (adjacency, ()) = rayon::join(
             || Adjacency::new(positions.len(), &triangles),
-            || set_normals(&mut vertices, &triangles),
+            || set_normals(&mut vertices, &triangles, normals),
         );
         Some(Self { triangles, adjacency, vertices, mesh_vertices, unit })
     }
@@ -88,18 +89,29 @@ fn cross_product(vertices: &[Vertex], triangle: &[u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// n̂: normalised sum of the cross products of the faces at a vertex (ours: area weighting).
-fn set_normals(vertices: &mut [Vertex], triangles: &[[u32; 3]]) {
+/// n̂: normalised sum of the cross products of the faces at a vertex (ours: area weighting by default).
+fn set_normals(vertices: &mut [Vertex], triangles: &[[u32; 3]], weights: NormalWeights) {
     let mut sums = vec![VectorSum::default(); vertices.len()];
     for t in triangles {
         let cross = cross_product(vertices, t);
-        for &v in t {
-            sums[v as usize].add(cross);
+        for (i, &v) in t.iter().enumerate() {
+            let term = match weights {
+                NormalWeights::Area => cross,
+                NormalWeights::Angle => cross.normalize_or_zero() * angle(vertices, t, i),
+                NormalWeights::Uniform => cross.normalize_or_zero(),
+            };
+            sums[v as usize].add(term);
         }
     }
     for (vertex, sum) in vertices.iter_mut().zip(&sums) {
         vertex.normal = sum.direction();
     }
+}
+
+/// Angle of a triangle at its corner `i`, radians.
+fn angle(vertices: &[Vertex], triangle: &[u32; 3], i: usize) -> f64 {
+    let [a, b, c] = [0, 1, 2].map(|k| vertices[triangle[(i + k) % 3] as usize].position);
+    (b - a).angle_between(c - a)
 }
 
 /// Sum of vectors that knows whether its terms cancelled.

@@ -4,25 +4,25 @@ use glam::DVec3;
 
 /// A symmetric 3 × 3 matrix.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sym3 {
-    pub(super) xx: f64,
-    pub(super) xy: f64,
-    pub(super) xz: f64,
-    pub(super) yy: f64,
-    pub(super) yz: f64,
-    pub(super) zz: f64,
+pub(crate) struct Sym3 {
+    pub(crate) xx: f64,
+    pub(crate) xy: f64,
+    pub(crate) xz: f64,
+    pub(crate) yy: f64,
+    pub(crate) yz: f64,
+    pub(crate) zz: f64,
 }
 
 /// Eigenvalues in ascending order, never negative, and the unit eigenvectors that belong to them.
-pub(super) struct Eigen {
-    pub(super) values: [f64; 3],
-    pub(super) vectors: [DVec3; 3],
+pub(crate) struct Eigen {
+    pub(crate) values: [f64; 3],
+    pub(crate) vectors: [DVec3; 3],
 }
 
 impl Sym3 {
     /// Adds weight·v·vᵀ.
     #[inline]
-    pub(super) fn add_outer(&mut self, v: DVec3, weight: f64) {
+    pub(crate) fn add_outer(&mut self, v: DVec3, weight: f64) {
         let s = v * weight;
         self.xx += s.x * v.x;
         self.xy += s.x * v.y;
@@ -34,7 +34,7 @@ impl Sym3 {
 
     /// Adds weight·m.
     #[inline]
-    pub(super) fn add_scaled(&mut self, m: &Sym3, weight: f64) {
+    pub(crate) fn add_scaled(&mut self, m: &Sym3, weight: f64) {
         self.xx += weight * m.xx;
         self.xy += weight * m.xy;
         self.xz += weight * m.xz;
@@ -44,7 +44,7 @@ impl Sym3 {
     }
 
     #[inline]
-    pub(super) fn times(&self, v: DVec3) -> DVec3 {
+    pub(crate) fn times(&self, v: DVec3) -> DVec3 {
         DVec3::new(
             self.xx * v.x + self.xy * v.y + self.xz * v.z,
             self.xy * v.x + self.yy * v.y + self.yz * v.z,
@@ -52,19 +52,19 @@ impl Sym3 {
         )
     }
 
-    pub(super) fn trace(&self) -> f64 {
+    pub(crate) fn trace(&self) -> f64 {
         self.xx + self.yy + self.zz
     }
 
     /// Sum of the products of the entries, the trace of the product of the matrices.
-    pub(super) fn inner(&self, m: &Sym3) -> f64 {
+    pub(crate) fn inner(&self, m: &Sym3) -> f64 {
         let diagonal = self.xx * m.xx + self.yy * m.yy + self.zz * m.zz;
         diagonal + 2.0 * (self.xy * m.xy + self.xz * m.xz + self.yz * m.yz)
     }
 
     /// All eigenpairs by cyclic Jacobi rotations. Meant for positive semidefinite matrices: what rounding
     /// makes negative becomes 0.
-    pub(super) fn eigen(&self) -> Eigen {
+    pub(crate) fn eigen(&self) -> Eigen {
         let mut a = [[self.xx, self.xy, self.xz], [self.xy, self.yy, self.yz], [self.xz, self.yz, self.zz]];
         let mut vectors = [DVec3::X, DVec3::Y, DVec3::Z];
         // Convergence is quadratic: four or five sweeps in practice.
@@ -109,7 +109,7 @@ impl Sym3 {
     /// Newton's iteration on the characteristic polynomial climbs from 0 to λ0; the eigenvector is then
     /// orthogonal to the rows of C − λ0·I. With the trace scaled to 1 its error is about
     /// 1e-17 / ((λ1 − λ0)(λ2 − λ0))², so a small gap is left to [`Sym3::eigen`].
-    pub(super) fn smallest_eigenvector(&self) -> DVec3 {
+    pub(crate) fn smallest_eigenvector(&self) -> DVec3 {
         const SMALLEST_GAP: f64 = 2e-3;
         let scale = self.trace().recip();
         let [xx, xy, xz, yy, yz, zz] =
@@ -151,7 +151,7 @@ impl Sym3 {
 
 /// `axis` or its opposite: on the side of `normal`, or with a positive largest component when that does
 /// not decide (ours).
-pub(super) fn oriented(axis: DVec3, normal: DVec3) -> DVec3 {
+pub(crate) fn oriented(axis: DVec3, normal: DVec3) -> DVec3 {
     const UNDECIDED: f64 = 1e-9;
     let mut sign = axis.dot(normal);
     if sign.abs() <= UNDECIDED {

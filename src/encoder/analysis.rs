@@ -3,10 +3,11 @@
 use super::options::{EncodeOptions, MAX_LEVELS, Progress};
 use super::quantise::Model;
 use crate::TriMesh;
-use crate::descriptors::{self, Window};
+use crate::descriptors;
+use crate::levels::Level;
 use crate::mesh::Surface;
 use crate::partition::{Geometry, remove_level};
-use crate::simplify::shrinking::FREE;
+use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, ShrinkingSurface};
 
 /// Without a wish for levels, the base has at most this many vertices if it can.
@@ -27,6 +28,8 @@ pub(super) struct Hierarchy {
     pub(super) base_faces: Vec<u32>,
     /// Mean edge length in steps of the full grid, base first, then each finer level.
     pub(super) mean_edges: Vec<f64>,
+    /// Mean squared distance of the full surface from each level, in squared steps, in that order.
+    pub(super) errors: Vec<f64>,
     pub(super) num_vertices: usize,
     pub(super) num_faces: usize,
 }
@@ -45,14 +48,26 @@ pub(super) fn analyse(
     let mut window = options.window;
     let mut records = Vec::new();
     let mut level = Level::collect(&shrinking);
+    let mut memory = ErrorMemory::new(&shrinking.surface, &model.positions);
     let mut mean_edges = vec![level.mean_edge(&model.cells)];
+    let mut errors = vec![0.0];
 
     while wants_level(options, records.len(), shrinking.num_vertices()) {
         let fraction = 1.0 - shrinking.num_vertices() as f64 / num_vertices as f64;
         progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });
-        let scores = level.scores(&model.positions, options, &window, mean_edge);
+        let scores = level.with_mesh(&model.positions, |mesh| {
+            descriptors::evaluate(options.descriptor, mesh, &window, mean_edge)
+        });
         let before = shrinking.num_vertices();
-        let record = remove_level(options.partition, &mut shrinking, geometry, &level.vertices, &scores);
+        let record = remove_level(
+            options.partition,
+            options.optimize,
+            &mut shrinking,
+            geometry,
+            &mut memory,
+            &level.vertices,
+            &scores,
+        );
         if record.len() == 0 {
             break;
         }
@@ -60,12 +75,14 @@ pub(super) fn analyse(
         records.push(record);
         level = Level::collect(&shrinking);
         mean_edges.push(level.mean_edge(&model.cells));
+        errors.push(memory.mean_error(&level.vertices) * model.steps_per_unit().powi(2));
         window.radius *= options.growth;
         if is_small && options.levels.is_none() {
             break;
         }
     }
     mean_edges.reverse();
+    errors.reverse();
     let base = Surface::from_triangles(level.triangles, level.vertices.len());
     debug_assert!(base.is_ok(), "removal keeps a surface: {base:?}");
     Hierarchy {
@@ -74,6 +91,7 @@ pub(super) fn analyse(
         base_vertices: level.vertices,
         base_faces: level.faces,
         mean_edges,
+        errors,
         num_vertices,
         num_faces,
     }
@@ -83,63 +101,5 @@ fn wants_level(options: &EncodeOptions, done: usize, num_vertices: usize) -> boo
     match options.levels {
         Some(levels) => done < levels as usize,
         None => done < MAX_LEVELS as usize && num_vertices > SMALL_BASE,
-    }
-}
-
-/// The vertices and triangles of one level, renumbered without gaps.
-struct Level {
-    vertices: Vec<u32>,
-    faces: Vec<u32>,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Level {
-    fn collect(shrinking: &ShrinkingSurface) -> Self {
-        let surface = &shrinking.surface;
-        let mut name = vec![u32::MAX; surface.corner_of.len()];
-        let mut vertices = Vec::with_capacity(shrinking.num_vertices());
-        for (v, n) in name.iter_mut().enumerate() {
-            if shrinking.contains(v as u32) {
-                *n = vertices.len() as u32;
-                vertices.push(v as u32);
-            }
-        }
-        let mut faces = Vec::with_capacity(shrinking.num_faces());
-        let mut triangles = Vec::with_capacity(shrinking.num_faces());
-        for (f, t) in surface.triangles.iter().enumerate() {
-            if *t != FREE {
-                faces.push(f as u32);
-                triangles.push(t.map(|v| name[v as usize]));
-            }
-        }
-        Self { vertices, faces, triangles }
-    }
-
-    fn scores(
-        &mut self,
-        positions: &[[f64; 3]],
-        options: &EncodeOptions,
-        window: &Window,
-        unit: f64,
-    ) -> Vec<f64> {
-        let triangles = std::mem::take(&mut self.triangles);
-        let compact = self.vertices.iter().map(|&v| positions[v as usize]).collect();
-        let mesh = TriMesh::from_valid_parts(compact, triangles);
-        let scores = descriptors::evaluate(options.descriptor, &mesh, window, unit);
-        self.triangles = mesh.into_parts().1;
-        scores
-    }
-
-    /// Mean length of the sides of all triangles, in steps.
-    fn mean_edge(&self, cells: &[[i32; 3]]) -> f64 {
-        let at = |v: u32| cells[self.vertices[v as usize] as usize];
-        let mut sum = 0.0;
-        for t in &self.triangles {
-            for i in 0..3 {
-                let (p, q) = (at(t[i]), at(t[(i + 1) % 3]));
-                sum += (0..3).map(|a| (f64::from(p[a]) - f64::from(q[a])).powi(2)).sum::<f64>().sqrt();
-            }
-        }
-        sum / (3 * self.triangles.len().max(1)) as f64
     }
 }

@@ -2,14 +2,14 @@
 
 mod analysis;
 mod options;
-mod quantise;
+pub(crate) mod quantise;
 mod schedule;
 mod write;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
 use crate::mesh::repair::{Repaired, repair};
-use crate::{EncodeError, StreamInfo, TriMesh};
+use crate::{EncodeError, Optimize, StreamInfo, TriMesh};
 
 /// Encodes a mesh.
 ///
@@ -43,9 +43,19 @@ pub fn encode_with_progress(
     let model = quantise::quantise(mesh, &source, options.quantization)?;
     drop(source);
     let hierarchy = analysis::analyse(mesh, surface, &model, options, progress);
-    let schedule = schedule::plan(&hierarchy, options.quantization, options.steps_per_edge);
     drop(model.positions);
-    let bytes = write::write(&hierarchy, &model.cells, &model.grid, &schedule, options, progress);
+    let write = |steps_per_edge| {
+        let schedule = schedule::plan(&hierarchy, options.quantization, steps_per_edge);
+        write::write(&hierarchy, &model.cells, &model.grid, &schedule, options, progress)
+    };
+    let mut bytes = write(options.steps_per_edge);
+    if options.optimize == Optimize::Size && options.steps_per_edge.is_none() {
+        // Which surfaces are smaller with all bits at once only trying tells.
+        let at_once = write(Some(f64::MAX));
+        if at_once.len() < bytes.len() {
+            bytes = at_once;
+        }
+    }
     // The encoder's own bytes always hold a header.
     let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(bytes.len()))?;
     Ok(Encoded { bytes, info, repair })

@@ -2,7 +2,7 @@
 
 use crate::descriptors::{Descriptor, Window};
 use crate::mesh::repair::RepairReport;
-use crate::{EncodeError, Partition, StreamInfo};
+use crate::{EncodeError, Optimize, Partition, StreamInfo};
 
 /// How to encode. `Default` gives the defaults named below.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,9 +20,11 @@ pub struct EncodeOptions {
     pub levels: Option<u32>,
     /// How odd vertices are chosen and removed. Default balanced.
     pub partition: Partition,
-    /// Grid steps to the mean edge of a level, from which its precision follows: fewer bits early
-    /// make better prefixes, more bits early sometimes make smaller files. Default 16.
-    pub steps_per_edge: f64,
+    /// What the balanced partition aims at. Default balanced.
+    pub optimize: Optimize,
+    /// Grid steps to the mean edge of a level, from which its precision follows; `None` follows the
+    /// error of each level instead, which makes better prefixes. Default `None`.
+    pub steps_per_edge: Option<f64>,
 }
 
 impl Default for EncodeOptions {
@@ -34,7 +36,8 @@ impl Default for EncodeOptions {
             quantization: 12,
             levels: None,
             partition: Partition::default(),
-            steps_per_edge: 16.0,
+            optimize: Optimize::default(),
+            steps_per_edge: None,
         }
     }
 }
@@ -60,8 +63,8 @@ impl EncodeOptions {
         if !(1.0..=16.0).contains(&self.growth) {
             return fail("growth", self.growth.to_string(), "1 to 16");
         }
-        if !(0.5..=1e9).contains(&self.steps_per_edge) {
-            return fail("steps per edge", self.steps_per_edge.to_string(), "0.5 to 1e9");
+        if let Some(steps) = self.steps_per_edge.filter(|steps| !(0.5..=1e9).contains(steps)) {
+            return fail("steps per edge", steps.to_string(), "0.5 to 1e9");
         }
         Ok(())
     }

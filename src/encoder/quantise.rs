@@ -5,17 +5,25 @@ use crate::bitstream::header::Grid;
 use crate::{EncodeError, TriMesh};
 
 /// The vertices of a surface, on the grid and off it.
-pub(super) struct Model {
-    pub(super) grid: Grid,
-    pub(super) cells: Vec<[i32; 3]>,
+pub(crate) struct Model {
+    pub(crate) grid: Grid,
+    pub(crate) cells: Vec<[i32; 3]>,
     /// Coordinates of the input times `unit`.
-    pub(super) positions: Vec<[f64; 3]>,
+    pub(crate) positions: Vec<[f64; 3]>,
     /// A power of two that brings the side near 1, so that squares neither overflow nor vanish.
-    pub(super) unit: f64,
+    pub(crate) unit: f64,
+}
+
+impl Model {
+    /// Steps of the grid to a unit of `positions`; 0 if all vertices share one place.
+    pub(super) fn steps_per_unit(&self) -> f64 {
+        let side = self.grid.side * self.unit;
+        if side > 0.0 { f64::from((1_u32 << self.grid.precision) - 1) / side } else { 0.0 }
+    }
 }
 
 /// Quantises the vertices `source` of `mesh`; there is at least one.
-pub(super) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result<Model, EncodeError> {
+pub(crate) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result<Model, EncodeError> {
     let at = |v: u32| mesh.positions()[v as usize];
     let first = at(source[0]);
     let (low, high) = source.iter().map(|&v| at(v)).fold((first, first), |(low, high), p| {
@@ -31,13 +39,18 @@ pub(super) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result
         let scaled = if scaled.is_finite() { scaled } else { (x - low) / side * steps };
         if side > 0.0 { (scaled + 0.5).floor().clamp(0.0, steps) as i32 } else { 0 }
     };
-    let unit = power_of_two_near(1.0 / side.max(f64::MIN_POSITIVE));
+    let unit = unit_near(side);
     Ok(Model {
         grid: Grid { precision, origin: low.map(|l| l + 0.0), side },
         cells: source.iter().map(|&v| std::array::from_fn(|a| cell(at(v)[a], low[a]))).collect(),
         positions: source.iter().map(|&v| at(v).map(|x| x * unit)).collect(),
         unit,
     })
+}
+
+/// A power of two that brings `side` near 1.
+pub(crate) fn unit_near(side: f64) -> f64 {
+    power_of_two_near(1.0 / side.max(f64::MIN_POSITIVE))
 }
 
 /// The power of two at or below a positive number, within what a double can hold as a normal.

@@ -16,23 +16,34 @@ pub(super) struct Schedule {
     pub(super) steps: Vec<Step>,
 }
 
-/// Each split comes with as many bits as make its mean edge `steps_per_edge` grid steps long; what
-/// is missing then follows the last split. Without a split there is nothing to come later for.
-pub(super) fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: f64) -> Schedule {
-    let needed = |mean_edge: f64| {
-        let hidden = (mean_edge / steps_per_edge).max(1.0).log2().floor();
+/// A bit then buys about as much in a refinement as in a split: a split costs some 5 bits per vertex
+/// there is and takes 2 dB off the error, a refinement 2 bits and takes 6 dB off that of rounding.
+const ROUNDING_SHARE: f64 = 0.25;
+
+/// Each split comes with the precision its level needs; what is missing then follows the last split.
+/// Without a split there is nothing to come later for.
+///
+/// With `steps_per_edge` a level needs as many bits as make its mean edge that many grid steps long.
+/// Else it needs as many as keep the error of rounding (a twelfth of the squared step) below
+/// [`ROUNDING_SHARE`] of that of the level's shape.
+pub(super) fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: Option<f64>) -> Schedule {
+    let needed = |level: usize| {
+        let hidden = match steps_per_edge {
+            Some(steps) => (hierarchy.mean_edges[level] / steps).max(1.0).log2(),
+            None => 0.5 * (12.0 * ROUNDING_SHARE * hierarchy.errors[level]).max(1.0).log2(),
+        };
         precision.saturating_sub(hidden as u32).max(1)
     };
-    let has_splits = !hierarchy.records.is_empty();
-    let base_precision = if has_splits { needed(hierarchy.mean_edges[0]) } else { precision };
+    let num_levels = hierarchy.records.len();
+    let base_precision = if num_levels > 0 { needed(0) } else { precision };
     let mut current = base_precision;
     let mut steps = Vec::new();
-    for (level, &mean_edge) in hierarchy.mean_edges.iter().enumerate().skip(1) {
-        while current < needed(mean_edge) {
+    for level in 1..=num_levels {
+        while current < needed(level) {
             steps.push(Step::Refine);
             current += 1;
         }
-        steps.push(Step::Split(hierarchy.records.len() - level));
+        steps.push(Step::Split(num_levels - level));
     }
     steps.extend((current..precision).map(|_| Step::Refine));
     Schedule { base_precision, steps }

@@ -185,3 +185,20 @@ pub fn write_to(mut out: impl Write, mesh: &TriMesh, format: Format) -> Result<(
     }
     Ok(())
 }
+
+/// Writes `mesh` as PLY with a colour per vertex (properties `red`, `green` and `blue`), else as
+/// [`write_to`].
+///
+/// # Errors
+/// If `out` fails, or there is not one colour per vertex.
+pub fn write_ply_coloured(
+    mut out: impl Write,
+    mesh: &TriMesh,
+    colours: &[[u8; 3]],
+) -> Result<(), WriteError> {
+    if colours.len() != mesh.num_vertices() {
+        let message = format!("{} colours for {} vertices", colours.len(), mesh.num_vertices());
+        return Err(WriteError::Unrepresentable { message });
+    }
+    Ok(ply::write_coloured(&mut out, mesh, Some(colours))?)
+}

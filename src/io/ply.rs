@@ -34,6 +34,20 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
 
 /// Writes a binary little-endian file: `float` if every coordinate is a float32, else `double`.
 pub(super) fn write(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
+    write_coloured(out, mesh, None)
+}
+
+/// As [`write`], with red, green and blue of every vertex if they are given.
+pub(super) fn write_coloured(
+    out: &mut impl Write,
+    mesh: &TriMesh,
+    colours: Option<&[[u8; 3]]>,
+) -> io::Result<()> {
+    let colour = if colours.is_some() {
+        "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+    } else {
+        ""
+    };
     let is_float = mesh.positions().iter().flatten().all(|&c| f64::from(c as f32) == c);
     let coordinate = if is_float { "float" } else { "double" };
     // Many readers know `int` only; it reaches far enough nearly always.
@@ -41,16 +55,19 @@ pub(super) fn write(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
     write!(
         out,
         "ply\nformat binary_little_endian 1.0\n\
-         element vertex {}\nproperty {coordinate} x\nproperty {coordinate} y\nproperty {coordinate} z\n\
+         element vertex {}\nproperty {coordinate} x\nproperty {coordinate} y\nproperty {coordinate} z\n{colour}\
          element face {}\nproperty list uchar {index} vertex_indices\nend_header\n",
         mesh.num_vertices(),
         mesh.num_triangles(),
     )?;
-    for position in mesh.positions() {
+    for (v, position) in mesh.positions().iter().enumerate() {
         if is_float {
             out.write_all(position.map(|c| (c as f32).to_le_bytes()).as_flattened())?;
         } else {
             out.write_all(position.map(f64::to_le_bytes).as_flattened())?;
+        }
+        if let Some(colours) = colours {
+            out.write_all(&colours[v])?;
         }
     }
     for triangle in mesh.triangles() {

@@ -5,6 +5,8 @@ mod build;
 pub(crate) mod repair;
 pub(crate) mod surface;
 mod tri_mesh;
+#[cfg(any(feature = "encoder", feature = "metrics"))]
+pub(crate) mod triangle;
 
 pub(crate) use surface::Surface;
 pub use tri_mesh::{MeshError, TriMesh};

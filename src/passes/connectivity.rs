@@ -2,7 +2,7 @@
 //! mesh are walked from gate to gate and grouped into patches.
 
 use super::patch::{CLOSED, Patches};
-use super::{GridMesh, Malformed};
+use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::bitstream::mixer::{MixedBit, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
@@ -26,6 +26,7 @@ pub(crate) struct ConnectivityTarget {
 pub(crate) const NOT_IN_PATCH: u32 = u32::MAX;
 
 /// Adaptive models, kept from level to level.
+#[derive(Clone)]
 pub(crate) struct ConnectivityModels {
     in_patch: MixedBit<4>,
     grow: MixedBit<4>,
@@ -185,6 +186,9 @@ impl<'a> Walk<'a> {
             }
             self.decide(coder, 3 * seed, true)?;
             while let Some(gate) = self.gates.pop_front() {
+                if coder.is_exhausted() || coder.is_guessing() {
+                    return Err(Malformed(EXHAUSTED));
+                }
                 let beyond = self.surface.across(gate);
                 if beyond != NO_CORNER && self.faces[(beyond / 3) as usize] == Face::Undecided {
                     self.decide(coder, beyond, false)?;
@@ -201,7 +205,9 @@ impl<'a> Walk<'a> {
         let wanted = self.target.map_or(NOT_IN_PATCH, |t| t.patch_of_face[face as usize]);
         let (contexts, set) = self.face_contexts(corner, is_seed);
         let tables = Tables::get();
-        if !self.models.in_patch.code(coder, tables, contexts, &[], set, wanted != NOT_IN_PATCH) {
+        let is_in_patch =
+            self.models.in_patch.code(coder, tables, contexts, &[], set, wanted != NOT_IN_PATCH);
+        if !is_in_patch {
             self.mark(face, Face::Kept);
             self.gates.push_back(next(corner));
             self.gates.push_back(prev(corner));

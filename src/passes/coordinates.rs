@@ -4,11 +4,12 @@
 use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
 use super::patch::Patches;
 use super::surroundings::Surroundings;
-use super::{GridMesh, Malformed};
+use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::residual::{Expectation, ResidualModel};
 
 /// Adaptive models, kept from level to level.
+#[derive(Clone)]
 pub(crate) struct CoordinateModels {
     guesses: GuessModels,
     residuals: ResidualModel,
@@ -33,6 +34,9 @@ pub(crate) fn code<B: BitCoder>(
     let mut surroundings = Surroundings::default();
     let limit = 1_i64 << precision;
     for patch in 0..patches.len() {
+        if coder.is_exhausted() {
+            return Err(Malformed(EXHAUSTED));
+        }
         surroundings.gather_odd(mesh, patches, patch);
         let mut vertex = VertexGuess::new(&models.guesses, &surroundings);
         let wanted = target.map_or([0; 3], |t| t[patch]);
@@ -53,6 +57,9 @@ pub(crate) fn code<B: BitCoder>(
                 sign: 2 * class + usize::from(guess.leans_down),
             };
             let value = models.residuals.code(coder, &expected, wanted[guess.axis]);
+            if coder.is_guessing() {
+                return Ok(());
+            }
             let value = value.filter(|&v| (0..limit).contains(&i64::from(v)));
             let value = value.ok_or(Malformed("a vertex lies outside the grid"))?;
             vertex.settle(&mut models.guesses, &guess, kind, value);

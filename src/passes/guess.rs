@@ -32,6 +32,7 @@ const MAX_SLOPE: f32 = 4.0;
 const MAX_CENTRE: f32 = 1e9;
 
 /// What is learnt about coordinates; kept from pass to pass.
+#[derive(Clone)]
 pub(crate) struct GuessModels {
     /// Per class: the filter of the coordinates along the surface and of the one across it.
     filters: Vec<[AffineFilter; 2]>,

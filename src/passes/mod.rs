@@ -37,6 +37,9 @@ impl GridMesh {
     }
 }
 
+/// What a payload is told that ends too early.
+pub(crate) const EXHAUSTED: &str = "a pass needs more bytes than it has";
+
 /// A payload names something that no encoder writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Malformed(pub(crate) &'static str);

@@ -16,6 +16,7 @@ const LIMIT: u32 = 250;
 const LEAST_MASS: f32 = 1e-6;
 
 /// Adaptive models, kept from pass to pass.
+#[derive(Clone)]
 pub(crate) struct RefineModels {
     guesses: GuessModels,
     bit: MixedBit<4>,

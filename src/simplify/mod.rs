@@ -1,7 +1,10 @@
 //! Removal of odd vertices from a surface, and the record from which an encoder brings them back.
 
 pub(crate) mod collapse;
+mod deviation;
 pub(crate) mod geometry;
+pub(crate) mod hole;
+pub(crate) mod memory;
 pub(crate) mod record;
 pub(crate) mod shrinking;
 pub(crate) mod triangulate;

@@ -67,6 +67,8 @@ typedef struct LwcEncodeOptions {
   const char *descriptor;
   // Name of the partition, "balanced" or "algorithm1"; null for the default.
   const char *partition;
+  // What the balanced partition aims at, "size", "balanced" or "prefix"; null for the default.
+  const char *optimize;
   // Topological radius of the window, in edges.
   uint32_t rings;
   // Euclidean radius of the window, in mean edges.
@@ -77,7 +79,7 @@ typedef struct LwcEncodeOptions {
   uint32_t quantization;
   // Levels above the base mesh; negative: until the base mesh is small.
   int32_t levels;
-  // Grid steps to the mean edge of a level.
+  // Grid steps to the mean edge of a level; 0: by the error of each level.
   double steps_per_edge;
 } LwcEncodeOptions;
 

@@ -2,7 +2,7 @@
 
 use crate::error::{Status, tell};
 use lwc::descriptors::{Descriptor, Window};
-use lwc::{Limits, Partition};
+use lwc::{Limits, Optimize, Partition};
 use std::ffi::{CStr, c_char};
 
 /// How to decode, and what a stream that is not trusted may ask for.
@@ -27,6 +27,8 @@ pub struct EncodeOptions {
     pub descriptor: *const c_char,
     /// Name of the partition, "balanced" or "algorithm1"; null for the default.
     pub partition: *const c_char,
+    /// What the balanced partition aims at, "size", "balanced" or "prefix"; null for the default.
+    pub optimize: *const c_char,
     /// Topological radius of the window, in edges.
     pub rings: u32,
     /// Euclidean radius of the window, in mean edges.
@@ -37,7 +39,7 @@ pub struct EncodeOptions {
     pub quantization: u32,
     /// Levels above the base mesh; negative: until the base mesh is small.
     pub levels: i32,
-    /// Grid steps to the mean edge of a level.
+    /// Grid steps to the mean edge of a level; 0: by the error of each level.
     pub steps_per_edge: f64,
 }
 
@@ -55,12 +57,13 @@ pub extern "C" fn lwc_encode_options_default() -> EncodeOptions {
     EncodeOptions {
         descriptor: std::ptr::null(),
         partition: std::ptr::null(),
+        optimize: std::ptr::null(),
         rings: options.window.rings,
         radius: options.window.radius,
         growth: options.growth,
         quantization: options.quantization,
         levels: options.levels.map_or(-1, |levels| levels as i32),
-        steps_per_edge: options.steps_per_edge,
+        steps_per_edge: options.steps_per_edge.unwrap_or(0.0),
     }
 }
 
@@ -81,11 +84,15 @@ pub fn encode(from: &EncodeOptions) -> Result<lwc::EncodeOptions, Status> {
         let found = Partition::ALL.into_iter().find(|partition| partition.name() == name);
         options.partition = found.ok_or_else(|| unknown("partition", &name))?;
     }
+    if let Some(name) = name(from.optimize) {
+        let found = Optimize::ALL.into_iter().find(|optimize| optimize.name() == name);
+        options.optimize = found.ok_or_else(|| unknown("aim", &name))?;
+    }
     options.window = Window { rings: from.rings, radius: from.radius };
     options.growth = from.growth;
     options.quantization = from.quantization;
     options.levels = u32::try_from(from.levels).ok();
-    options.steps_per_edge = from.steps_per_edge;
+    options.steps_per_edge = (from.steps_per_edge != 0.0).then_some(from.steps_per_edge);
     Ok(options)
 }
 

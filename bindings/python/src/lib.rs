@@ -4,7 +4,7 @@ mod error;
 
 use error::{DecodeError, EncodeError, decode_error, encode_error, option_error};
 use lwc::descriptors::{Descriptor, Window};
-use lwc::{DecodeOptions, EncodeOptions, Limits, Partition, StreamInfo, TriMesh};
+use lwc::{DecodeOptions, EncodeOptions, Limits, Optimize, Partition, StreamInfo, TriMesh};
 use numpy::{IntoPyArray, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,7 +31,7 @@ fn descriptors() -> Vec<&'static str> {
 /// `lwc encode`. Returns the stream.
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, descriptor=None, quantization=None, levels=None, rings=None,
-    radius=None, growth=None, partition=None, steps_per_edge=None))]
+    radius=None, growth=None, partition=None, optimize=None, steps_per_edge=None))]
 #[allow(clippy::too_many_arguments)] // They are keywords in Python.
 fn encode<'py>(
     py: Python<'py>,
@@ -44,6 +44,7 @@ fn encode<'py>(
     radius: Option<f64>,
     growth: Option<f64>,
     partition: Option<&str>,
+    optimize: Option<&str>,
     steps_per_edge: Option<f64>,
 ) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
     let mut options = EncodeOptions::default();
@@ -54,13 +55,17 @@ fn encode<'py>(
         let found = Partition::ALL.into_iter().find(|partition| partition.name() == name);
         options.partition = found.ok_or_else(|| option_error(py, "partition", name))?;
     }
+    if let Some(name) = optimize {
+        let found = Optimize::ALL.into_iter().find(|optimize| optimize.name() == name);
+        options.optimize = found.ok_or_else(|| option_error(py, "optimize", name))?;
+    }
     let Window { rings: default_rings, radius: default_radius } = options.window;
     options.window =
         Window { rings: rings.unwrap_or(default_rings), radius: radius.unwrap_or(default_radius) };
     options.quantization = quantization.unwrap_or(options.quantization);
     options.levels = levels.or(options.levels);
     options.growth = growth.unwrap_or(options.growth);
-    options.steps_per_edge = steps_per_edge.unwrap_or(options.steps_per_edge);
+    options.steps_per_edge = steps_per_edge.or(options.steps_per_edge);
 
     let mesh = tri_mesh(py, vertices, faces)?;
     let encoded = py.detach(|| lwc::encode(&mesh, &options)).map_err(|error| encode_error(py, error))?;

@@ -44,6 +44,7 @@ def encode(
     radius: float | None = None,
     growth: float | None = None,
     partition: str | None = None,
+    optimize: str | None = None,
     steps_per_edge: float | None = None,
 ) -> bytes: ...
 def decode(

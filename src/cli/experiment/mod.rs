@@ -1,0 +1,100 @@
+//! `lwc experiment`: section 6 of the paper on meshes of the user's choice.
+
+pub mod args;
+mod charts;
+mod ranking;
+mod results;
+
+use super::input::read_mesh;
+use super::ui::{Bar, Ui};
+use anyhow::Context;
+use args::Experiment as Args;
+use lwc::TriMesh;
+use lwc::descriptors::Descriptor;
+use lwc::experiment::Experiment;
+use results::{Results, Run, Subject};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Runs what is not there yet, mesh after mesh and descriptor after descriptor: each has all cores for
+/// its descriptor, and its times are its own.
+pub fn run(args: &Args, ui: &Ui) -> anyhow::Result<()> {
+    let mut results = Results::open(&args.out, (&args.settings()).into())?;
+    let weights: Vec<f64> = args.meshes.iter().map(|path| weight(path)).collect();
+    let total: f64 = weights.iter().sum();
+    let bar = ui.bar_with_time_left("experiment");
+    let mut before = 0.0;
+    for (path, weight) in args.meshes.iter().zip(&weights) {
+        let mesh = read_mesh(path, ui)?.mesh;
+        let share = Share { bar: &bar, begin: before / total, length: weight / total };
+        run_mesh(args, path, &mesh, &mut results, &share)?;
+        before += weight;
+    }
+    drop(bar);
+    ranking::print(&mut io::stdout().lock(), &results)?;
+    Ok(())
+}
+
+/// Bytes of a file, as a measure of its work; a compressed one counts more.
+fn weight(path: &Path) -> f64 {
+    let bytes = std::fs::metadata(path).map_or(1, |metadata| metadata.len().max(1)) as f64;
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("zst")) {
+        2.0 * bytes
+    } else {
+        bytes
+    }
+}
+
+/// Part of the bar that belongs to a mesh.
+struct Share<'a> {
+    bar: &'a Bar,
+    begin: f64,
+    length: f64,
+}
+
+fn run_mesh(
+    args: &Args,
+    path: &Path,
+    mesh: &TriMesh,
+    results: &mut Results,
+    share: &Share,
+) -> anyhow::Result<()> {
+    let subject = Subject::new(path, mesh, args.noise());
+    let missing = |d: &&Descriptor| !results.contains(&subject, **d);
+    let missing: Vec<Descriptor> = args.descriptors.0.iter().filter(missing).copied().collect();
+    if !missing.is_empty() {
+        let experiment = Experiment::new(mesh, args.noise()).with_context(|| path.display().to_string())?;
+        for (i, &descriptor) in missing.iter().enumerate() {
+            let progress = |fraction: f64| {
+                let done = (i as f64 + fraction) / missing.len() as f64;
+                share.bar.set(share.begin + share.length * done);
+            };
+            let steps = experiment.run(descriptor, &args.settings(), &progress);
+            let run = Run { subject: subject.clone(), descriptor: descriptor.name().into(), steps };
+            share.bar.suspend(|| print(&run))?;
+            results.runs.push(run);
+            results.save(&args.out)?;
+        }
+    }
+    let groups = results.by_subject();
+    match groups.iter().find(|(found, _)| **found == subject) {
+        Some((_, runs)) => charts::write(&args.out, &subject, runs),
+        None => Ok(()),
+    }
+}
+
+fn print(run: &Run) -> io::Result<()> {
+    let first = run.steps.first();
+    writeln!(
+        io::stdout().lock(),
+        "{:<24} {:<12} {} steps, mean apd {:.5}, odd {:.1} %, first window {:.1}, {:.2} s of it {:.2} s descriptor",
+        run.subject.title(),
+        run.descriptor,
+        run.steps.len(),
+        run.mean_apd(),
+        100.0 * run.mean_odd_share(),
+        first.map_or(0.0, |step| step.mean_window),
+        run.seconds(),
+        run.descriptor_seconds(),
+    )
+}

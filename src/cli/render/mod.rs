@@ -1,0 +1,101 @@
+//! `lwc render`: pictures of meshes and streams.
+
+pub mod args;
+mod montage;
+
+use super::exit::Failure;
+use super::input::{DecodedStream, StreamSource, note_if_incomplete, read_mesh};
+use super::output::Destination;
+use super::ui::Ui;
+use anyhow::Context;
+use args::{HeatArgs, Picture, Render};
+use lwc::descriptors::{evaluate, mean_edge_length};
+use lwc::render::{Camera, Heat, Image, RenderError, render, with_legend};
+use lwc::{DecodeError, DecodeOptions, TriMesh};
+use std::path::Path;
+
+/// Reads, draws, writes.
+pub fn run(args: &Render, ui: &Ui) -> anyhow::Result<()> {
+    let destination = Destination::new(args.output.clone());
+    check_ending(&destination).with_context(|| destination.name())?;
+    destination.check(Some(&args.input), false)?;
+    let picture = if args.montage {
+        montage::montage(args, ui)?
+    } else {
+        let mesh = read(args, ui)?;
+        match args.color_by {
+            Some(descriptor) => {
+                let values = evaluate(descriptor, &mesh, &args.window(), mean_edge_length(&mesh));
+                heat_picture(&mesh, &values, descriptor.name(), &args.heat, &args.picture)?
+            }
+            None => plain_picture(&mesh, &args.picture)?,
+        }
+    };
+    destination.write(|out| picture.write_png(out))
+}
+
+fn check_ending(destination: &Destination) -> Result<(), Failure> {
+    match destination {
+        Destination::File(path) if !has_ending(path, "png") => {
+            Err(Failure::Usage("unknown ending; pictures are written as .png only".into()))
+        }
+        _ => Ok(()),
+    }
+}
+
+pub fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
+}
+
+/// The mesh to show.
+fn read(args: &Render, ui: &Ui) -> anyhow::Result<TriMesh> {
+    if !has_ending(&args.input, "lwc") {
+        if args.level.is_some() || args.bytes.is_some() {
+            let what = "--level and --bytes are for streams (.lwc)".to_owned();
+            return Err(Failure::Usage(what)).with_context(|| args.input.display().to_string());
+        }
+        return Ok(read_mesh(&args.input, ui)?.mesh);
+    }
+    let source = StreamSource::File(args.input.clone());
+    let mut options = DecodeOptions::new().limits(args.limits.limits());
+    if let Some(level) = args.level {
+        options = options.level(level);
+    }
+    let DecodedStream { decoder, error } = source.decode(args.bytes, options, ui)?;
+    if let Some(error) = error {
+        return Err(error).with_context(|| source.name());
+    }
+    note_if_incomplete(&decoder, args.bytes, &source.name(), ui);
+    let mesh = decoder.mesh().ok_or(DecodeError::NoMesh).with_context(|| source.name())?;
+    Ok(mesh.to_tri_mesh())
+}
+
+fn camera(mesh: &TriMesh, picture: &Picture) -> Camera {
+    let [width, height] = picture.size;
+    Camera::fit(mesh, picture.view, picture.up, width, height)
+}
+
+/// `mesh` in one colour.
+///
+/// # Errors
+/// If the picture is too large.
+pub fn plain_picture(mesh: &TriMesh, picture: &Picture) -> Result<Image, RenderError> {
+    render(mesh, None, &camera(mesh, picture), &picture.style())
+}
+
+/// `mesh` coloured by `values`, one per vertex, with a legend.
+///
+/// # Errors
+/// If the picture is too large.
+pub fn heat_picture(
+    mesh: &TriMesh,
+    values: &[f64],
+    title: &str,
+    heat: &HeatArgs,
+    picture: &Picture,
+) -> Result<Image, RenderError> {
+    let heat = Heat::new(values, heat.clip);
+    let style = picture.style();
+    let image = render(mesh, Some(&heat.values), &camera(mesh, picture), &style)?;
+    with_legend(&image, title, &heat, style.background)
+}

@@ -1,0 +1,58 @@
+//! One level of a surface that shrinks, as a mesh without gaps.
+
+use crate::TriMesh;
+use crate::simplify::ShrinkingSurface;
+use crate::simplify::shrinking::FREE;
+
+/// The vertices and triangles of one level, renumbered without gaps.
+pub(crate) struct Level {
+    pub(crate) vertices: Vec<u32>,
+    pub(crate) faces: Vec<u32>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl Level {
+    pub(crate) fn collect(shrinking: &ShrinkingSurface) -> Self {
+        let surface = &shrinking.surface;
+        let mut name = vec![u32::MAX; surface.corner_of.len()];
+        let mut vertices = Vec::with_capacity(shrinking.num_vertices());
+        for (v, n) in name.iter_mut().enumerate() {
+            if shrinking.contains(v as u32) {
+                *n = vertices.len() as u32;
+                vertices.push(v as u32);
+            }
+        }
+        let mut faces = Vec::with_capacity(shrinking.num_faces());
+        let mut triangles = Vec::with_capacity(shrinking.num_faces());
+        for (f, t) in surface.triangles.iter().enumerate() {
+            if *t != FREE {
+                faces.push(f as u32);
+                triangles.push(t.map(|v| name[v as usize]));
+            }
+        }
+        Self { vertices, faces, triangles }
+    }
+
+    /// Calls `see` with the level as a mesh of its own; `positions` are those of the whole surface.
+    pub(crate) fn with_mesh<T>(&mut self, positions: &[[f64; 3]], see: impl FnOnce(&TriMesh) -> T) -> T {
+        let triangles = std::mem::take(&mut self.triangles);
+        let compact = self.vertices.iter().map(|&v| positions[v as usize]).collect();
+        let mesh = TriMesh::from_valid_parts(compact, triangles);
+        let seen = see(&mesh);
+        self.triangles = mesh.into_parts().1;
+        seen
+    }
+
+    /// Mean length of the sides of all triangles, in steps.
+    pub(crate) fn mean_edge(&self, cells: &[[i32; 3]]) -> f64 {
+        let at = |v: u32| cells[self.vertices[v as usize] as usize];
+        let mut sum = 0.0;
+        for t in &self.triangles {
+            for i in 0..3 {
+                let (p, q) = (at(t[i]), at(t[(i + 1) % 3]));
+                sum += (0..3).map(|a| (f64::from(p[a]) - f64::from(q[a])).powi(2)).sum::<f64>().sqrt();
+            }
+        }
+        sum / (3 * self.triangles.len().max(1)) as f64
+    }
+}

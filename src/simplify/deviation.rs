@@ -1,0 +1,73 @@
+//! How far a triangulated hole lies from the star that was there.
+
+use super::Star;
+use crate::mesh::triangle::squared_distance;
+use glam::DVec3;
+
+/// Scratch space.
+#[derive(Default)]
+pub(super) struct Deviation {
+    /// The vertex and the middles of its spokes.
+    samples: Vec<DVec3>,
+    ring: Vec<DVec3>,
+    left: Vec<usize>,
+    triangles: Vec<[DVec3; 3]>,
+}
+
+impl Deviation {
+    pub(super) fn set(&mut self, star: &Star, positions: &[[f64; 3]]) {
+        let centre = DVec3::from(positions[star.vertex as usize]);
+        self.ring.clear();
+        self.ring.extend(star.ring.iter().map(|&v| DVec3::from(positions[v as usize])));
+        self.samples.clear();
+        self.samples.push(centre);
+        self.samples.extend(self.ring.iter().map(|&p| 0.5 * (p + centre)));
+    }
+
+    /// Sum of the squared distances of the star's samples, its vertex counting twice, from the
+    /// triangles that cutting `ears` makes; or something above `bound` if that is above it.
+    pub(super) fn of(&mut self, ears: impl Iterator<Item = usize>, bound: f64) -> f64 {
+        let degree = self.ring.len();
+        self.left.clear();
+        self.left.extend(0..degree);
+        self.triangles.clear();
+        for ear in ears {
+            let count = self.left.len();
+            let Some(k) = self.left.iter().position(|&i| i == ear) else { continue };
+            let [p, n] = [(k + count - 1) % count, (k + 1) % count].map(|k| self.ring[self.left[k]]);
+            self.triangles.push([p, self.ring[ear], n]);
+            self.left.remove(k);
+        }
+        let mut sum = 0.0;
+        for (i, &sample) in self.samples.iter().enumerate() {
+            let nearest =
+                self.triangles.iter().map(|t| squared_distance(sample, t)).fold(f64::INFINITY, f64::min);
+            sum += if i == 0 { 2.0 * nearest } else { nearest };
+            if sum > bound {
+                break;
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fan_that_keeps_a_ridge_deviates_less() {
+        // A roof: the vertex and two opposite ring vertices lie on the ridge, z = 1.
+        let positions =
+            [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
+        let star = Star { vertex: 0, corners: vec![0; 4], ring: vec![1, 2, 3, 4] };
+        let mut deviation = Deviation::default();
+        deviation.set(&star, &positions);
+        // Cutting off 2 and 4 leaves the diagonal 1–3, the ridge; the other one lies one below it.
+        let along = deviation.of([1, 3].into_iter(), f64::INFINITY);
+        let over = deviation.of([0, 2].into_iter(), f64::INFINITY);
+        assert!(along < 1e-20, "{along}");
+        assert!(over > 0.5, "{over}");
+        assert!(deviation.of([0, 2].into_iter(), 0.1) > 0.1);
+    }
+}
