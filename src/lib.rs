@@ -6,6 +6,8 @@ mod decoder;
 #[cfg(feature = "encoder")]
 pub mod decomposition;
 #[cfg(feature = "encoder")]
+mod descent;
+#[cfg(feature = "encoder")]
 pub mod descriptors;
 #[cfg(feature = "encoder")]
 mod encoder;

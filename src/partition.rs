@@ -34,6 +34,11 @@ impl Partition {
             Partition::Algorithm1 => "algorithm1",
         }
     }
+
+    /// Whether the descriptor has a say.
+    pub(crate) fn uses_descriptor(self, optimize: Optimize) -> bool {
+        self == Partition::Algorithm1 || optimize != Optimize::Size
+    }
 }
 
 /// Coordinates that decide removals: both per vertex of the surface.
@@ -49,7 +54,7 @@ pub(crate) struct Geometry<'a> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Optimize {
-    /// The smallest whole file.
+    /// The smallest whole file. No vertex is protected, so the descriptor has no say.
     Size,
     /// Prefixes nearly as good as they get, for a file a little larger. The default.
     #[default]
@@ -100,7 +105,7 @@ impl Thinning {
 const FINE_SHARE: f64 = 0.5;
 
 /// Removes one level of odd vertices. `vertices` are those of the level and `scores` their
-/// descriptor values, in the same order.
+/// descriptor values, in the same order; there are none if the descriptor has no say.
 pub(crate) fn remove_level(
     partition: Partition,
     optimize: Optimize,

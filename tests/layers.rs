@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 19] = [
+const LAYERS: [(&str, &[&str]); 20] = [
     ("error", &[]),
     ("limits", &["error"]),
     ("lanes", &[]),
@@ -19,6 +19,7 @@ const LAYERS: [(&str, &[&str]); 19] = [
     ("simplify", &["mesh"]),
     ("levels", &["mesh", "simplify"]),
     ("partition", &["mesh", "simplify"]),
+    ("descent", &["descriptors", "levels", "mesh", "partition", "simplify"]),
     ("passes", &["bitstream", "lanes", "lifting", "mesh"]),
     ("decoder", &["bitstream", "error", "limits", "mesh", "passes"]),
     (
@@ -26,9 +27,9 @@ const LAYERS: [(&str, &[&str]); 19] = [
         &[
             "bitstream",
             "decoder",
+            "descent",
             "descriptors",
             "error",
-            "levels",
             "limits",
             "mesh",
             "partition",
@@ -38,7 +39,7 @@ const LAYERS: [(&str, &[&str]); 19] = [
     ),
     (
         "decomposition",
-        &["decoder", "descriptors", "encoder", "error", "levels", "limits", "mesh", "partition", "simplify"],
+        &["decoder", "descent", "descriptors", "encoder", "error", "levels", "limits", "mesh", "partition"],
     ),
     ("experiment", &["descriptors", "encoder", "error", "levels", "mesh", "partition", "simplify"]),
     // Reaches into everything, and is no part of the library.

@@ -3,26 +3,18 @@
 use super::Options;
 use super::edit::EditError;
 use crate::decoder::{Decoder, PassKind};
+use crate::descent::{Descent, Settings};
 use crate::descriptors;
 use crate::encoder::quantise::quantise;
 use crate::levels::Level;
 use crate::limits::Limits;
 use crate::mesh::Surface;
 use crate::mesh::repair::{Repaired, repair};
-use crate::partition::{Geometry, Optimize, remove_level};
-use crate::simplify::ShrinkingSurface;
-use crate::simplify::memory::ErrorMemory;
+use crate::partition::{Geometry, Optimize};
 use crate::{EncodeError, TriMesh};
 
 /// Bits of the grid on which the sides of faces are compared.
 const LEGALITY_BITS: u32 = 30;
-/// Without a wish for levels, the base has at most this many vertices if it can.
-const SMALL_BASE: usize = 40;
-/// Without a wish, a level that removes a smaller share is the last.
-const LEAST_SHARE: f64 = 0.02;
-/// Most levels, whatever the wish.
-const MAX_LEVELS: usize = 128;
-
 /// Triangles of M^0 … M^L. M^k has the vertices below its number.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tower {
@@ -69,42 +61,13 @@ impl Tower {
         let mean_edge = descriptors::mean_edge_length(mesh) * model.unit;
         let geometry = Geometry { grid: &model.cells, positions: &model.positions };
         let num_vertices = surface.corner_of.len();
-        let mut memory = ErrorMemory::new(&surface, &model.positions);
-        let mut shrinking = ShrinkingSurface::new(surface);
-        let mut window = options.window;
+        let Options { descriptor, window, growth, levels, partition, .. } = *options;
+        let optimize = Optimize::default();
+        let settings = Settings { descriptor, window, growth, levels, partition, optimize };
+        let mut descent = Descent::new(surface, geometry, mean_edge, settings);
         // Finest first, in the numbering of the surface.
-        let mut levels = vec![Level::collect(&shrinking)];
-        let wants_more = |done: usize, vertices: usize| match options.levels {
-            Some(levels) => done < (levels as usize).min(MAX_LEVELS),
-            None => done < MAX_LEVELS && vertices > SMALL_BASE,
-        };
-        while let Some(level) = levels.last_mut().filter(|level| !level.vertices.is_empty()) {
-            let before = level.vertices.len();
-            if !wants_more(levels.len() - 1, before) {
-                break;
-            }
-            let Some(level) = levels.last_mut() else { break };
-            let scores = level.with_mesh(&model.positions, |mesh| {
-                descriptors::evaluate(options.descriptor, mesh, &window, mean_edge)
-            });
-            let record = remove_level(
-                options.partition,
-                Optimize::default(),
-                &mut shrinking,
-                geometry,
-                &mut memory,
-                &level.vertices,
-                &scores,
-            );
-            if record.len() == 0 {
-                break;
-            }
-            levels.push(Level::collect(&shrinking));
-            window.radius *= options.growth;
-            if options.levels.is_none() && (record.len() as f64) < LEAST_SHARE * before as f64 {
-                break;
-            }
-        }
+        let mut levels: Vec<Level> = descent.by_ref().map(|(finer, _)| finer).collect();
+        levels.push(descent.into_level());
 
         // The coarsest level that a vertex is part of, then its index.
         let mut coarsest = vec![0_u32; num_vertices];

@@ -1,19 +1,14 @@
 //! Down the levels: M^L → M^0.
 
-use super::options::{EncodeOptions, MAX_LEVELS, Progress};
+use super::options::{EncodeOptions, Progress};
 use super::quantise::Model;
 use crate::TriMesh;
+use crate::descent::{Descent, Settings};
 use crate::descriptors;
-use crate::levels::Level;
 use crate::mesh::Surface;
-use crate::partition::{Geometry, remove_level};
-use crate::simplify::memory::ErrorMemory;
-use crate::simplify::{LevelRecord, ShrinkingSurface};
+use crate::partition::Geometry;
+use crate::simplify::LevelRecord;
 
-/// Without a wish for levels, the base has at most this many vertices if it can.
-const SMALL_BASE: usize = 40;
-/// Without a wish, a level that would remove a smaller share is not worth a pass.
-const LEAST_SHARE: f64 = 0.02;
 /// Share of an encoder's time that goes into the analysis.
 pub(super) const ANALYSIS_SHARE: f64 = 0.6;
 
@@ -44,43 +39,20 @@ pub(super) fn analyse(
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
     let mean_edge = descriptors::mean_edge_length(mesh) * model.unit;
     let geometry = Geometry { grid: &model.cells, positions: &model.positions };
-    let mut shrinking = ShrinkingSurface::new(surface);
-    let mut window = options.window;
+    let mut descent = Descent::new(surface, geometry, mean_edge, settings(options));
+    let squared_step = model.steps_per_unit().powi(2);
     let mut records = Vec::new();
-    let mut level = Level::collect(&shrinking);
-    let mut memory = ErrorMemory::new(&shrinking.surface, &model.positions);
-    let mut mean_edges = vec![level.mean_edge(&model.cells)];
+    let mut mean_edges = vec![descent.level().mean_edge(&model.cells)];
     let mut errors = vec![0.0];
-
-    while wants_level(options, records.len(), shrinking.num_vertices()) {
-        let fraction = 1.0 - shrinking.num_vertices() as f64 / num_vertices as f64;
-        progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });
-        let scores = level.with_mesh(&model.positions, |mesh| {
-            descriptors::evaluate(options.descriptor, mesh, &window, mean_edge)
-        });
-        let before = shrinking.num_vertices();
-        let record = remove_level(
-            options.partition,
-            options.optimize,
-            &mut shrinking,
-            geometry,
-            &mut memory,
-            &level.vertices,
-            &scores,
-        );
-        if record.len() == 0 {
-            break;
-        }
-        let is_small = (record.len() as f64) < LEAST_SHARE * before as f64;
+    progress(Progress { stage: "levels", fraction: 0.0 });
+    while let Some((_, record)) = descent.next() {
         records.push(record);
-        level = Level::collect(&shrinking);
-        mean_edges.push(level.mean_edge(&model.cells));
-        errors.push(memory.mean_error(&level.vertices) * model.steps_per_unit().powi(2));
-        window.radius *= options.growth;
-        if is_small && options.levels.is_none() {
-            break;
-        }
+        mean_edges.push(descent.level().mean_edge(&model.cells));
+        errors.push(descent.mean_error() * squared_step);
+        let fraction = 1.0 - descent.level().vertices.len() as f64 / num_vertices as f64;
+        progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });
     }
+    let level = descent.into_level();
     mean_edges.reverse();
     errors.reverse();
     let base = Surface::from_triangles(level.triangles, level.vertices.len());
@@ -97,9 +69,7 @@ pub(super) fn analyse(
     }
 }
 
-fn wants_level(options: &EncodeOptions, done: usize, num_vertices: usize) -> bool {
-    match options.levels {
-        Some(levels) => done < levels as usize,
-        None => done < MAX_LEVELS as usize && num_vertices > SMALL_BASE,
-    }
+fn settings(options: &EncodeOptions) -> Settings {
+    let EncodeOptions { descriptor, window, growth, levels, partition, optimize, .. } = *options;
+    Settings { descriptor, window, growth, levels, partition, optimize }
 }

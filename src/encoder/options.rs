@@ -1,5 +1,6 @@
 //! What the caller may choose, and what comes back.
 
+use crate::descent::MAX_LEVELS;
 use crate::descriptors::{Descriptor, Window};
 use crate::mesh::repair::RepairReport;
 use crate::{EncodeError, Optimize, Partition, StreamInfo};
@@ -41,9 +42,6 @@ impl Default for EncodeOptions {
         }
     }
 }
-
-/// Most levels that can be asked for.
-pub(super) const MAX_LEVELS: u32 = 128;
 
 impl EncodeOptions {
     pub(super) fn check(&self) -> Result<(), EncodeError> {

@@ -1,0 +1,113 @@
+//! From M^L down: level by level the descriptor ranks the vertices and the partition removes the odd ones.
+
+use crate::descriptors::{self, Descriptor, Window};
+use crate::levels::Level;
+use crate::mesh::Surface;
+use crate::partition::{Geometry, Optimize, Partition, remove_level};
+use crate::simplify::memory::ErrorMemory;
+use crate::simplify::{LevelRecord, ShrinkingSurface};
+
+/// Most levels, whatever the wish.
+pub(crate) const MAX_LEVELS: u32 = 128;
+/// Without a wish for levels, the base has at most this many vertices if it can.
+const SMALL_BASE: usize = 40;
+/// Without a wish, a level that removes a smaller share is the last.
+const LEAST_SHARE: f64 = 0.02;
+
+/// How to go down.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Settings {
+    pub(crate) descriptor: Descriptor,
+    /// Of the level to come.
+    pub(crate) window: Window,
+    /// Factor of the radius from each level to the next coarser one.
+    pub(crate) growth: f64,
+    /// `None` goes on until the base is small.
+    pub(crate) levels: Option<u32>,
+    pub(crate) partition: Partition,
+    pub(crate) optimize: Optimize,
+}
+
+/// A surface on its way down. Yields each level with what was removed from it, finest first; what stays
+/// in the end is the base.
+pub(crate) struct Descent<'a> {
+    settings: Settings,
+    geometry: Geometry<'a>,
+    /// l̄ of the finest level, in the units of the geometry.
+    mean_edge: f64,
+    shrinking: ShrinkingSurface,
+    memory: ErrorMemory<'a>,
+    level: Level,
+    depth: u32,
+    is_over: bool,
+}
+
+impl<'a> Descent<'a> {
+    pub(crate) fn new(surface: Surface, geometry: Geometry<'a>, mean_edge: f64, settings: Settings) -> Self {
+        let memory = ErrorMemory::new(&surface, geometry.positions);
+        let shrinking = ShrinkingSurface::new(surface);
+        let level = Level::collect(&shrinking);
+        Self { settings, geometry, mean_edge, shrinking, memory, level, depth: 0, is_over: false }
+    }
+
+    /// What has not been removed yet.
+    pub(crate) fn level(&self) -> &Level {
+        &self.level
+    }
+
+    pub(crate) fn into_level(self) -> Level {
+        self.level
+    }
+
+    /// Mean squared distance of the original surface from the present level, by its quadrics.
+    pub(crate) fn mean_error(&self) -> f64 {
+        self.memory.mean_error(&self.level.vertices)
+    }
+
+    fn wants_level(&self) -> bool {
+        match self.settings.levels {
+            Some(levels) => self.depth < levels.min(MAX_LEVELS),
+            None => !self.is_over && self.depth < MAX_LEVELS && self.level.vertices.len() > SMALL_BASE,
+        }
+    }
+
+    /// Empty where the partition does not look at them.
+    fn scores(&mut self) -> Vec<f64> {
+        let Settings { descriptor, window, partition, optimize, .. } = self.settings;
+        if !partition.uses_descriptor(optimize) {
+            return Vec::new();
+        }
+        let mean_edge = self.mean_edge;
+        self.level.with_mesh(self.geometry.positions, |mesh| {
+            descriptors::evaluate(descriptor, mesh, &window, mean_edge)
+        })
+    }
+}
+
+impl Iterator for Descent<'_> {
+    type Item = (Level, LevelRecord);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if !self.wants_level() {
+            return None;
+        }
+        let scores = self.scores();
+        let record = remove_level(
+            self.settings.partition,
+            self.settings.optimize,
+            &mut self.shrinking,
+            self.geometry,
+            &mut self.memory,
+            &self.level.vertices,
+            &scores,
+        );
+        if record.len() == 0 {
+            return None;
+        }
+        let finer = std::mem::replace(&mut self.level, Level::collect(&self.shrinking));
+        self.is_over = (record.len() as f64) < LEAST_SHARE * finer.vertices.len() as f64;
+        self.settings.window.radius *= self.settings.growth;
+        self.depth += 1;
+        Some((finer, record))
+    }
+}
