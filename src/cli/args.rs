@@ -85,7 +85,7 @@ pub struct Encode {
     pub partition: Partition,
     /// What the balanced partition aims at.
     ///
-    /// - size: the smallest whole file
+    /// - size: the smallest whole file; the descriptor has no say
     /// - balanced: prefixes nearly as good as they get, for a file a little larger
     /// - prefix: the best prefixes
     #[arg(long, value_name = "AIM", verbatim_doc_comment)]
@@ -110,6 +110,13 @@ pub struct Scale {
     #[arg(short, long, value_name = "NAME", default_value_t = Descriptor::default())]
     #[arg(value_parser = descriptor_parser())]
     pub descriptor: Descriptor,
+    #[command(flatten)]
+    pub window: WindowArgs,
+}
+
+/// Neighbourhood of a vertex that a descriptor sees.
+#[derive(Debug, clap::Args)]
+pub struct WindowArgs {
     /// Topological radius of the descriptor's window, in edges, 1 to 64.
     #[arg(long, value_name = "N", default_value_t = Window::default().rings, allow_negative_numbers = true)]
     #[arg(value_parser = value_parser!(u32).range(1..=64))]
@@ -120,7 +127,7 @@ pub struct Scale {
     pub radius: f64,
 }
 
-impl Scale {
+impl WindowArgs {
     pub fn window(&self) -> Window {
         Window { rings: self.rings, radius: self.radius }
     }

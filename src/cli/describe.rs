@@ -28,7 +28,13 @@ pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             bar.set(done as f64 / mesh.num_vertices().max(1) as f64);
         };
-        evaluate_with_progress(args.scale.descriptor, &mesh, &args.scale.window(), mean_edge, &progress)
+        evaluate_with_progress(
+            args.scale.descriptor,
+            &mesh,
+            &args.scale.window.window(),
+            mean_edge,
+            &progress,
+        )
     };
     ui.detail(&args.input.display().to_string(), &format!("mean edge length {mean_edge}"));
     match Kind::of(&destination) {

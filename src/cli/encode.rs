@@ -18,7 +18,7 @@ impl Encode {
     pub fn options(&self) -> EncodeOptions {
         let mut options = EncodeOptions::default();
         options.descriptor = self.scale.descriptor;
-        options.window = self.scale.window();
+        options.window = self.scale.window.window();
         options.growth = self.growth;
         options.quantization = self.quantization;
         options.levels = self.levels.0;
@@ -166,8 +166,8 @@ impl Report<'_> {
             "levels": info.finest_level(),
             "precision": info.precision(),
             "descriptor": args.scale.descriptor.name(),
-            "rings": args.scale.rings,
-            "radius": args.scale.radius,
+            "rings": args.scale.window.rings,
+            "radius": args.scale.window.radius,
             "growth": args.growth,
             "partition": args.partition.name(),
             "optimize": args.optimize.name(),

@@ -64,7 +64,7 @@ impl Filter {
     fn options(&self) -> Options {
         let mut options = Options::default();
         options.descriptor = self.scale.descriptor;
-        options.window = self.scale.window();
+        options.window = self.scale.window.window();
         options.growth = self.growth;
         options.levels = self.levels;
         options.prediction = self.prediction;

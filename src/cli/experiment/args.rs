@@ -1,9 +1,10 @@
 //! What may be typed after `lwc experiment`.
 
+use crate::cli::args::WindowArgs;
 use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::value_parser;
-use lwc::descriptors::{Descriptor, NormalWeights, PcaQuadric, UnknownDescriptor, Window};
+use lwc::descriptors::{Descriptor, NormalWeights, PcaQuadric, UnknownDescriptor};
 use lwc::experiment::{Noise, Settings, Units};
 use std::path::PathBuf;
 
@@ -32,14 +33,8 @@ pub struct Experiment {
     #[arg(long, value_name = "N", default_value_t = Settings::default().levels)]
     #[arg(value_parser = value_parser!(u32).range(1..=64))]
     pub levels: u32,
-    /// Topological radius of the window, in edges, 1 to 64.
-    #[arg(long, value_name = "N", default_value_t = Window::default().rings)]
-    #[arg(value_parser = value_parser!(u32).range(1..=64))]
-    pub rings: u32,
-    /// Euclidean radius of the first window, in mean edges of the mesh, above 0, at most 1e6.
-    #[arg(long, value_name = "R", default_value_t = Window::default().radius)]
-    #[arg(value_parser = quantity::number(f64::MIN_POSITIVE, 1e6))]
-    pub radius: f64,
+    #[command(flatten)]
+    pub window: WindowArgs,
     /// Factor of the radius from each step to the next, 1 to 16.
     #[arg(long, value_name = "FACTOR", default_value_t = Settings::default().growth)]
     #[arg(value_parser = quantity::number(1.0, 16.0))]
@@ -71,7 +66,7 @@ impl Experiment {
     pub fn settings(&self) -> Settings {
         let mut settings = Settings::default();
         settings.levels = self.levels;
-        settings.window = Window { rings: self.rings, radius: self.radius };
+        settings.window = self.window.window();
         settings.growth = self.growth;
         settings.units = self.units;
         settings.readings.normals = self.normals;

@@ -1,10 +1,10 @@
 //! What may be typed after `lwc render`, and about pictures elsewhere.
 
-use crate::cli::args::{self, LimitArgs};
+use crate::cli::args::{self, LimitArgs, WindowArgs};
 use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::value_parser;
-use lwc::descriptors::{Descriptor, Window};
+use lwc::descriptors::Descriptor;
 use lwc::render::{Shading, Style, Up, View};
 use std::path::PathBuf;
 
@@ -35,14 +35,8 @@ pub struct Render {
     pub color_by: Option<Descriptor>,
     #[command(flatten)]
     pub heat: HeatArgs,
-    /// Topological radius of the descriptor's window, in edges, 1 to 64.
-    #[arg(long, value_name = "N", default_value_t = Window::default().rings)]
-    #[arg(value_parser = value_parser!(u32).range(1..=64))]
-    pub rings: u32,
-    /// Euclidean radius of the window, in mean edges of the mesh that is shown, above 0, at most 1e6.
-    #[arg(long, value_name = "R", default_value_t = Window::default().radius)]
-    #[arg(value_parser = quantity::number(f64::MIN_POSITIVE, 1e6))]
-    pub radius: f64,
+    #[command(flatten)]
+    pub window: WindowArgs,
     /// Show all levels of a stream side by side, with vertices, bytes and the distance from the finest.
     #[arg(long, conflicts_with_all = ["level", "bytes"])]
     pub montage: bool,
@@ -54,12 +48,6 @@ pub struct Render {
     pub columns: Option<u32>,
     #[command(flatten)]
     pub limits: LimitArgs,
-}
-
-impl Render {
-    pub fn window(&self) -> Window {
-        Window { rings: self.rings, radius: self.radius }
-    }
 }
 
 /// How a picture looks.

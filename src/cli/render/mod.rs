@@ -25,7 +25,7 @@ pub fn run(args: &Render, ui: &Ui) -> anyhow::Result<()> {
         let mesh = read(args, ui)?;
         match args.color_by {
             Some(descriptor) => {
-                let values = evaluate(descriptor, &mesh, &args.window(), mean_edge_length(&mesh));
+                let values = evaluate(descriptor, &mesh, &args.window.window(), mean_edge_length(&mesh));
                 heat_picture(&mesh, &values, descriptor.name(), &args.heat, &args.picture)?
             }
             None => plain_picture(&mesh, &args.picture)?,

@@ -48,7 +48,7 @@ impl Model {
             name: file_name,
             bytes: Arc::new(bytes),
             descriptor: args.scale.descriptor,
-            window: args.scale.window(),
+            window: args.scale.window.window(),
             finest: OnceLock::new(),
             colours: OnceLock::new(),
             quality: Arc::default(),
@@ -97,7 +97,7 @@ fn encode(args: &View, ui: &Ui) -> anyhow::Result<Vec<u8>> {
     let file = read_mesh(&args.input, ui)?;
     let mut options = EncodeOptions::default();
     options.descriptor = args.scale.descriptor;
-    options.window = args.scale.window();
+    options.window = args.scale.window.window();
     let bar = ui.bar("encoding");
     let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
     Ok(lwc::encode_with_progress(&file.mesh, &options, &progress)?.bytes)
