@@ -3,6 +3,7 @@
 use super::bytes::Reader;
 #[cfg(any(feature = "encoder", test))]
 use super::bytes::write_varint;
+use super::chunk::kind;
 
 /// Largest number of bits per coordinate.
 pub(crate) const MAX_PRECISION: u32 = 30;
@@ -94,6 +95,17 @@ pub(crate) enum Action {
     Base { precision: u32 },
     Split,
     Refine,
+}
+
+impl Action {
+    /// The kind of its chunk.
+    pub(crate) fn kind(self) -> u8 {
+        match self {
+            Action::Base { .. } => kind::BASE,
+            Action::Split => kind::SPLIT,
+            Action::Refine => kind::REFINE,
+        }
+    }
 }
 
 /// One row of the table of passes.

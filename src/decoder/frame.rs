@@ -1,7 +1,7 @@
 //! From bytes to chunks: what a stream announces, and where its passes begin.
 
 use crate::DecodeError;
-use crate::bitstream::chunk::{self, Frame, kind};
+use crate::bitstream::chunk::{self, Frame};
 use crate::bitstream::header::{self, Action, Grid, Pass, Provenance};
 use crate::limits::Limits;
 
@@ -256,13 +256,4 @@ pub(super) fn list_passes(
 
 fn frame_size(payload: u32) -> u64 {
     1 + chunk::varint_size(payload) as u64 + u64::from(payload) + chunk::CHECKSUM_BYTES as u64
-}
-
-/// The kind a pass's chunk must have.
-pub(super) fn kind_of(pass: PassKind) -> u8 {
-    match pass {
-        PassKind::Base => kind::BASE,
-        PassKind::Split => kind::SPLIT,
-        PassKind::Refine => kind::REFINE,
-    }
 }

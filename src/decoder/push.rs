@@ -166,7 +166,7 @@ impl Decoder {
         let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
         let pass = self.next_pass().copied().ok_or(malformed("a pass that was not announced"))?;
         let payload = self.frames.payload(chunk);
-        if chunk.kind != frame::kind_of(pass.kind) || payload.len() != pass.row.bytes as usize {
+        if chunk.kind != pass.row.action.kind() || payload.len() != pass.row.bytes as usize {
             return Err(malformed("a pass differs from the table of passes"));
         }
         passes::check_limits(&pass, &self.limits, self.frames.buffered())?;
@@ -223,7 +223,7 @@ impl Decoder {
         let (kind, payload) = self.frames.cut_chunk()?;
         // The coder reads four bytes ahead: fewer decide nothing.
         let is_next =
-            kind == frame::kind_of(pass.kind) && (5..=pass.row.bytes as usize).contains(&payload.len());
+            kind == pass.row.action.kind() && (5..=pass.row.bytes as usize).contains(&payload.len());
         if self.failed || !is_next {
             return None;
         }

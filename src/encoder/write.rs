@@ -61,12 +61,7 @@ fn assemble(
     let rows: Vec<Pass> = passes.iter().map(|(row, _)| *row).collect();
     chunk::write(&mut bytes, kind::PASSES, &header::write_passes(&rows));
     for (row, payload) in passes {
-        let kind = match row.action {
-            Action::Base { .. } => kind::BASE,
-            Action::Split => kind::SPLIT,
-            Action::Refine => kind::REFINE,
-        };
-        chunk::write(&mut bytes, kind, payload);
+        chunk::write(&mut bytes, row.action.kind(), payload);
     }
     bytes
 }

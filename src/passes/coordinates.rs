@@ -22,7 +22,7 @@ impl CoordinateModels {
 }
 
 /// Codes the cells of the vertices that `patches` brought back, in their order. `mesh.surface` is
-/// refined already, `mesh.positions` gets one entry per patch.
+/// refined already, `mesh.positions` gets one entry per patch; of a cut payload as many as it tells.
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     models: &mut CoordinateModels,
