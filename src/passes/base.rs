@@ -234,7 +234,7 @@ impl<'a> Grower<'a> {
         for axis in 0..3 {
             let expected = Expectation {
                 origin: guess[axis],
-                mixture: Mixture::single(0.0, scale),
+                mixture: Mixture::around_zero(scale),
                 best: 0,
                 log_scale: log2(scale),
                 kind,
