@@ -14,13 +14,11 @@ import argparse
 import json
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
-import tempfile
 import time
 
-LWC = pathlib.Path(__file__).resolve().parent.parent / "target" / "release" / "lwc"
+from common import LWC, draco_encoder, has_draco, unpacked
 
 
 def run(command):
@@ -41,15 +39,14 @@ def best(runs):
     return [min(column) for column in zip(*runs)]
 
 
-def measure(mesh, bits, runs, folder, has_draco):
+def measure(mesh, bits, runs, folder, with_draco):
     lwc, drc, out = folder / "m.lwc", folder / "m.drc", folder / "out.ply"
     jobs = {
         "encode": [LWC, "encode", "--quiet", mesh, "-q", str(bits), "-o", lwc],
         "decode": [LWC, "decode", "--quiet", lwc, "-o", out],
     }
-    if has_draco:
-        jobs["draco encode"] = ["draco_encoder", "-i", mesh, "-qp", str(bits), "-cl", "10", "--skip", "NORMAL", "--skip", "TEX_COORD",
-                                "-o", drc]
+    if with_draco:
+        jobs["draco encode"] = draco_encoder(mesh, bits, drc)
         jobs["draco decode"] = ["draco_decoder", "-i", drc, "-o", out]
     figures = {name: [] for name in jobs}
     for _ in range(runs):
@@ -57,7 +54,7 @@ def measure(mesh, bits, runs, folder, has_draco):
             figures[name].append(run([str(c) for c in command]))
     figures = {name: best(rows) for name, rows in figures.items()}
     info = subprocess.run([LWC, "info", "--json", lwc], capture_output=True, check=True, text=True)
-    return figures, info.stdout, lwc.stat().st_size, drc.stat().st_size if has_draco else None
+    return figures, info.stdout, lwc.stat().st_size, drc.stat().st_size if with_draco else None
 
 
 def main():
@@ -66,33 +63,28 @@ def main():
     parser.add_argument("--bits", type=int, default=12)
     parser.add_argument("--runs", type=int, default=5)
     options = parser.parse_args()
-    has_draco = shutil.which("draco_encoder") is not None
-    if not has_draco:
+    with_draco = has_draco()
+    if not with_draco:
         print("draco_encoder is not installed: its columns are empty", file=sys.stderr)
     print("| mesh | vertices | lwc, bpv | Draco, bpv | size, ratio | encode, kv/s wall | CPU ratio to Draco "
           "| decode, kv/s CPU | CPU ratio to Draco | encoder, bytes/v | decoder, bytes/v |")
     print("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|")
     for path in options.meshes:
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            mesh = path
-            if path.suffix == ".zst":
-                mesh = folder / path.stem
-                subprocess.run(["zstd", "-q", "-d", path, "-o", mesh], check=True)
-            figures, info, size, draco = measure(mesh, options.bits, options.runs, folder, has_draco)
+        with unpacked(path) as (folder, mesh):
+            figures, info, size, draco = measure(mesh, options.bits, options.runs, folder, with_draco)
             passes = json.loads(info)["passes"]
             vertices = passes[-1]["vertices"]
             wall, cpu_encode, mib_encode = figures["encode"]
             _, cpu_decode, mib_decode = figures["decode"]
             cells = [mesh.stem, f"{vertices:,}", f"{8 * size / vertices:.2f}"]
-            if has_draco:
+            if with_draco:
                 cells += [f"{8 * draco / vertices:.2f}", f"{size / draco:.2f}"]
             else:
                 cells += ["–", "–"]
             cells.append(f"{vertices / wall / 1e3:.0f}")
-            cells.append(f"{cpu_encode / figures['draco encode'][1]:.1f}" if has_draco else "–")
+            cells.append(f"{cpu_encode / figures['draco encode'][1]:.1f}" if with_draco else "–")
             cells.append(f"{vertices / cpu_decode / 1e3:.0f}")
-            cells.append(f"{cpu_decode / figures['draco decode'][1]:.1f}" if has_draco else "–")
+            cells.append(f"{cpu_decode / figures['draco decode'][1]:.1f}" if with_draco else "–")
             cells += [f"{mib * 2**20 / vertices:.0f}" for mib in (mib_encode, mib_decode)]
             print("| " + " | ".join(cells) + " |", flush=True)
 

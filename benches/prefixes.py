@@ -11,11 +11,10 @@ of lwc's own file for `size` if draco_encoder is not installed.
 import argparse
 import json
 import pathlib
-import shutil
 import subprocess
-import tempfile
 
-LWC = pathlib.Path(__file__).resolve().parent.parent / "target" / "release" / "lwc"
+from common import LWC, draco_encoder, has_draco, unpacked
+
 AIMS = ["size", "balanced", "prefix"]
 SHARES = [0.05, 0.1, 0.2, 0.5]
 
@@ -27,9 +26,7 @@ def lwc(*arguments):
 
 def draco_bytes(mesh, bits, folder):
     out = folder / "m.drc"
-    skip = ["--skip", "NORMAL", "--skip", "TEX_COORD"]
-    command = ["draco_encoder", "-i", mesh, "-qp", bits, "-cl", 10, *skip, "-o", out]
-    subprocess.run(list(map(str, command)), check=True, capture_output=True)
+    subprocess.run(draco_encoder(mesh, bits, out), check=True, capture_output=True)
     return out.stat().st_size
 
 
@@ -45,24 +42,19 @@ def main():
     parser.add_argument("meshes", nargs="+", type=pathlib.Path)
     parser.add_argument("--bits", type=int, default=12)
     options = parser.parse_args()
-    has_draco = shutil.which("draco_encoder") is not None
+    with_draco = has_draco()
     print("| mesh | Draco, bpv | aim | bpv | 5 % | 10 % | 20 % | 50 % |")
     print("|---|--:|---|--:|--:|--:|--:|--:|")
     for path in options.meshes:
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            mesh = path
-            if path.suffix == ".zst":
-                mesh = folder / path.stem
-                subprocess.run(["zstd", "-q", "-d", path, "-o", mesh], check=True)
-            whole = draco_bytes(mesh, options.bits, folder) if has_draco else None
+        with unpacked(path) as (folder, mesh):
+            whole = draco_bytes(mesh, options.bits, folder) if with_draco else None
             for aim in AIMS:
                 stream = folder / f"{aim}.lwc"
                 lwc("encode", mesh, "-q", options.bits, "--optimize", aim, "-o", stream, "--quiet")
                 size = stream.stat().st_size
                 vertices = json.loads(lwc("info", "--json", stream))["passes"][-1]["vertices"]
                 whole = whole or size
-                cells = [mesh.stem, f"{8 * whole / vertices:.2f}" if has_draco else "–", aim, f"{8 * size / vertices:.2f}"]
+                cells = [mesh.stem, f"{8 * whole / vertices:.2f}" if with_draco else "–", aim, f"{8 * size / vertices:.2f}"]
                 cells += [quality(mesh, stream, int(share * whole)) for share in SHARES]
                 print("| " + " | ".join(cells) + " |", flush=True)
 
