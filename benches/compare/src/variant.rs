@@ -1,0 +1,54 @@
+//! Ways to encode that are compared.
+
+use lwc::descriptors::Descriptor;
+use lwc::{EncodeOptions, Optimize, Partition};
+use std::fmt;
+use std::str::FromStr;
+
+/// An aim or Algorithm 1, and a descriptor if not the usual one.
+#[derive(Clone, Copy, Debug)]
+pub struct Variant {
+    /// `None` is Algorithm 1.
+    aim: Option<Optimize>,
+    descriptor: Option<Descriptor>,
+}
+
+impl Variant {
+    pub fn options(self, bits: u32) -> EncodeOptions {
+        let mut options = EncodeOptions::default();
+        options.quantization = bits;
+        options.descriptor = self.descriptor.unwrap_or_default();
+        match self.aim {
+            Some(aim) => options.optimize = aim,
+            None => options.partition = Partition::Algorithm1,
+        }
+        options
+    }
+}
+
+impl fmt::Display for Variant {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.aim.map_or(Partition::Algorithm1.name(), Optimize::name))?;
+        self.descriptor.map_or(Ok(()), |descriptor| write!(f, ":{}", descriptor.name()))
+    }
+}
+
+impl FromStr for Variant {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (aim, descriptor) = match text.split_once(':') {
+            Some((aim, name)) => {
+                (aim, Some(name.parse().map_err(|e: lwc::descriptors::UnknownDescriptor| e.to_string())?))
+            }
+            None => (text, None),
+        };
+        if aim == Partition::Algorithm1.name() {
+            return Ok(Self { aim: None, descriptor });
+        }
+        let found = Optimize::ALL.into_iter().find(|known| known.name() == aim);
+        found
+            .map(|aim| Self { aim: Some(aim), descriptor })
+            .ok_or_else(|| format!("`{aim}` is neither size, balanced, prefix nor algorithm1"))
+    }
+}
