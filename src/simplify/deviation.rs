@@ -24,6 +24,12 @@ impl Deviation {
         self.samples.extend(self.ring.iter().map(|&p| 0.5 * (p + centre)));
     }
 
+    /// Sum of the squared lengths of the spokes: what a deviation is to be held against.
+    pub(super) fn extent(&self) -> f64 {
+        // Samples are half way along.
+        4.0 * self.samples[1..].iter().map(|&p| p.distance_squared(self.samples[0])).sum::<f64>()
+    }
+
     /// Sum of the squared distances of the star's samples, its vertex counting twice, from the
     /// triangles that cutting `ears` makes; or something above `bound` if that is above it.
     pub(super) fn of(&mut self, ears: impl Iterator<Item = usize>, bound: f64) -> f64 {

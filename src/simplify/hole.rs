@@ -9,6 +9,12 @@ use super::deviation::Deviation;
 use super::triangulate::EarClipper;
 use super::{ShrinkingSurface, Star};
 
+/// A vertex stays for now if the best legal hole deviates so many times more (squared) than the best of all:
+/// what is illegal this time was what the vertex was judged by.
+const UNFIT: f64 = 8.0;
+/// Deviations below this share of the star's extent are as good as none: a fiftieth of its spokes.
+const SMALL: f64 = 4e-4;
+
 /// Scratch space of the choice.
 #[derive(Default)]
 pub(crate) struct HoleFiller {
@@ -18,7 +24,7 @@ pub(crate) struct HoleFiller {
 }
 
 impl HoleFiller {
-    /// The ears to cut, or `None` if no triangulation is legal. The one that is cheap to code
+    /// The ears to cut, or `None` if no triangulation is legal or none that is fits. The one that is cheap to code
     /// ([`EarClipper`]) wins if its squared deviation is at most `tolerance` times that of the best
     /// half-edge collapse. `grid` decides legality, `positions` distances.
     pub(crate) fn fill(
@@ -41,11 +47,16 @@ impl HoleFiller {
         }
         self.deviation.set(star, positions);
         let mut best = (f64::INFINITY, None);
+        let mut least = f64::INFINITY;
         for target in (0..degree).filter(|&i| star.is_closed() || i == 0 || i == degree - 1) {
             let deviation = self.deviation.of(fan(target, degree), best.0);
+            least = least.min(deviation);
             if deviation < best.0 && is_legal(surface, star, target, grid) {
                 best = (deviation, Some(target));
             }
+        }
+        if best.0 > UNFIT * (least + SMALL * self.deviation.extent()) {
+            return None;
         }
         let bound = best.0 * tolerance;
         match (clipped, best.1) {
@@ -64,4 +75,29 @@ impl HoleFiller {
 /// The ears whose cutting leaves the fan around a ring vertex.
 fn fan(target: usize, degree: usize) -> impl Iterator<Item = usize> {
     (1..degree - 1).map(move |i| (target + i) % degree)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Surface;
+
+    #[test]
+    fn a_vertex_stays_if_only_a_bad_hole_is_legal() {
+        // A roof with vertex 0 on its ridge, which runs from 1 to 3.
+        let mut triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+        let grid = [[0, 0, 10], [10, 0, 10], [0, 10, 0], [-10, 0, 10], [0, -10, 0], [0, 30, 10]];
+        let positions = grid.map(|p| p.map(f64::from));
+        let fill = |triangles: &[[u32; 3]], num_vertices| {
+            let surface = Surface::from_triangles(triangles.to_vec(), num_vertices).unwrap();
+            let surface = ShrinkingSurface::new(surface);
+            let mut star = Star::default();
+            surface.read_star(0, &mut star);
+            HoleFiller::default().fill(&surface, &star, &grid, &positions, 1.0).map(<[usize]>::len)
+        };
+        assert_eq!(fill(&triangles, 5), Some(2));
+        // Now 1 and 3 are neighbours already, so that the ridge cannot be closed.
+        triangles.extend([[2, 1, 5], [3, 2, 5], [1, 3, 5]]);
+        assert_eq!(fill(&triangles, 6), None);
+    }
 }
