@@ -125,7 +125,7 @@ impl Thinning {
 }
 
 /// Levels with more than this share of all vertices are fine.
-const FINE_SHARE: f64 = 0.5;
+const FINE_SHARE: f64 = 0.7;
 
 /// Removes one level of odd vertices. `vertices` are those of the level and `scores` their
 /// descriptor values, in the same order; there are none if the descriptor has no say.
