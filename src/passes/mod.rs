@@ -12,6 +12,7 @@ pub(crate) mod guess;
 pub(crate) mod patch;
 pub(crate) mod refine;
 pub(crate) mod surroundings;
+pub(crate) mod work;
 
 use crate::mesh::Surface;
 
