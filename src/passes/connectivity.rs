@@ -99,6 +99,7 @@ enum Face {
 }
 
 /// Codes the patches of one level: exactly `count` of them when decoding.
+#[cfg(any(feature = "encoder", test))]
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     models: &mut ConnectivityModels,
