@@ -29,6 +29,8 @@ export interface Refinement {
   /** A guess of the RMS distance to the finest mesh, model units; NaN without normals. */
   expectedError: number;
   decodeMilliseconds: number;
+  /** Longest time that the worker was busy at a stretch so far, milliseconds. */
+  longestSlice: number;
 }
 
 export type OnRefine = (geometry: RefinedGeometry, refinement: Refinement) => void;
@@ -168,10 +170,10 @@ class Refined {
       this.geometry ??= RefinedGeometry.of(info, this.loader.normals, this.loader.decoderOptions.level);
       await this.geometry.refine(update, this.loader.slice);
       this.last = update;
-      const { pass, passesDone, isComplete, expectedError, decodeMilliseconds } = update;
+      const { pass, passesDone, isComplete, expectedError, decodeMilliseconds, longestSlice } = update;
       const bytes = this.received();
       this.onRefine?.(this.geometry, {
-        info, pass, passesDone, isComplete, bytes, expectedError, decodeMilliseconds,
+        info, pass, passesDone, isComplete, bytes, expectedError, decodeMilliseconds, longestSlice,
       });
     }
     if (!this.geometry) {
