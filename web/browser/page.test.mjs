@@ -133,6 +133,8 @@ test('the scrubber shows any prefix, and the end again', async (t) => {
       slider.value = String(share);
       slider.dispatchEvent(new Event('input'));
     }, share);
+  // With or without a worker at hand.
+  await page.evaluate(() => void globalThis.lwc.loader.preload());
   await scrub(0.1);
   await page.waitForFunction(() => globalThis.lwc.shown.pass.end <= 0.1 * globalThis.lwc.shown.info.totalBytes);
   const { pass, info } = await page.evaluate(() => globalThis.lwc.shown);

@@ -30,7 +30,7 @@ export function encodeMeshopt({ cells, indices }) {
     MeshoptEncoder.encodeVertexBuffer(new Uint8Array(vertices.buffer), count, 8),
     MeshoptEncoder.encodeIndexBuffer(new Uint8Array(sorted.buffer), sorted.length, 4),
   ];
-  return glb(coded, count, sorted.length, Math.max(...cells));
+  return glb(coded, count, sorted.length, cells.reduce((a, b) => Math.max(a, b), 0));
 }
 
 function glb([vertices, indices], numVertices, numIndices, largest) {

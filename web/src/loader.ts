@@ -77,6 +77,7 @@ export class LWCLoader extends Loader<RefinedGeometry> {
   /** In place of the browser's own. */
   fetch: Fetch | undefined;
   #loads = new Set<Running>();
+  #spare: { worker: DecoderWorker; hasNormals: boolean } | undefined;
 
   constructor(manager?: LoadingManager) {
     super(manager);
@@ -84,7 +85,31 @@ export class LWCLoader extends Loader<RefinedGeometry> {
 
   setDecoderOptions(options: WorkerOptions): this {
     this.decoderOptions = options;
+    this.#dropSpare();
     return this;
+  }
+
+  /** Starts a worker for the next load, which then need not wait for one. */
+  preload(): this {
+    this.#spare ??= { worker: this.#newWorker(), hasNormals: this.normals };
+    return this;
+  }
+
+  /** A worker that nobody else has. @internal */
+  takeWorker(): DecoderWorker {
+    if (this.#spare?.hasNormals !== this.normals) this.#dropSpare();
+    const worker = this.#spare?.worker ?? this.#newWorker();
+    this.#spare = undefined;
+    return worker;
+  }
+
+  #newWorker(): DecoderWorker {
+    return new DecoderWorker({ ...this.decoderOptions, shade: this.normals });
+  }
+
+  #dropSpare(): void {
+    this.#spare?.worker.close();
+    this.#spare = undefined;
   }
 
   setErrorTarget(target: ErrorTarget | undefined): this {
@@ -159,7 +184,7 @@ class Refined {
     readonly received: () => number,
     readonly onRefine: OnRefine | undefined,
   ) {
-    this.worker = new DecoderWorker({ ...loader.decoderOptions, shade: loader.normals });
+    this.worker = loader.takeWorker();
   }
 
   async untilDone(): Promise<RefinedGeometry> {
