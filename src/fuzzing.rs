@@ -12,8 +12,8 @@ use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format};
 use crate::mesh::Surface;
 use crate::{
-    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, StreamInfo,
-    TriMesh, Update, encode,
+    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Step,
+    StreamInfo, TriMesh, Update, encode,
 };
 
 const SMALL: Limits = Limits { max_memory: 16 << 20, max_vertices: 100_000, max_levels: 64 };
@@ -64,6 +64,8 @@ pub fn split_independent(data: &[u8]) {
     // Memory depends on what a caller pushes at once, so it gets no part in this.
     let limits = Limits { max_memory: 1 << 32, ..SMALL };
     let (mut whole, mut cut) = (Trace::new(limits), Trace::new(limits));
+    // Passes of the one rest, too.
+    cut.work = 1 + u32::from(seed[0]);
     whole.push(&stream);
     let mut random = u64::from_le_bytes(*seed) | 1;
     let mut rest = &stream[..];
@@ -87,11 +89,13 @@ struct Trace {
     decoder: Decoder,
     updates: Vec<(Update, Option<u32>)>,
     error: Option<DecodeError>,
+    /// Units between two rests.
+    work: u32,
 }
 
 impl Trace {
     fn new(limits: Limits) -> Self {
-        Self { decoder: Decoder::new(limits), updates: Vec::new(), error: None }
+        Self { decoder: Decoder::new(limits), updates: Vec::new(), error: None, work: u32::MAX }
     }
 
     fn push(&mut self, bytes: &[u8]) {
@@ -100,10 +104,15 @@ impl Trace {
         }
         let mut step = || {
             self.decoder.feed(bytes)?;
-            while let Some(update) = self.decoder.step()? {
-                self.updates.push((update, self.decoder.mesh().map(|m| m.checksum())));
+            loop {
+                match self.decoder.step_within(self.work)? {
+                    Step::Finished(update) => {
+                        self.updates.push((update, self.decoder.mesh().map(|m| m.checksum())));
+                    }
+                    Step::Unfinished => {}
+                    Step::Waiting => return Ok(()),
+                }
             }
-            Ok(())
         };
         self.error = step().err();
     }

@@ -7,7 +7,7 @@ mod common;
 use common::chunks::{self, Chunk, Row};
 use common::valid::assert_valid;
 use common::*;
-use lwc::{DecodeError, Decoder, EncodeOptions, Limits, Partition, PassKind, StreamInfo, encode};
+use lwc::{DecodeError, Decoder, EncodeOptions, Limits, Partition, PassKind, Step, StreamInfo, encode};
 
 /// Streams of a few hundred bytes with every kind of pass.
 fn streams() -> Vec<(&'static str, Vec<u8>)> {
@@ -82,7 +82,24 @@ fn decode_all(stream: &[u8], limits: Limits, what: &str) -> (Decoder, Option<Dec
         assert_eq!(decoder.step(), Err(DecodeError::Failed), "{what}");
         assert_eq!(decoder.mesh().map(|m| m.checksum()), checksum, "{what}: the mesh was lost");
     }
+    let (done, same_error) = decode_in_slices(stream, limits);
+    assert_eq!(same_error, error, "{what}: in slices");
+    assert_eq!(done.passes_done(), decoder.passes_done(), "{what}: in slices");
+    assert_eq!(done.mesh().map(|m| m.checksum()), checksum, "{what}: in slices");
     (decoder, error)
+}
+
+/// The same with passes that rest often.
+fn decode_in_slices(stream: &[u8], limits: Limits) -> (Decoder, Option<DecodeError>) {
+    let mut decoder = Decoder::new(limits);
+    let mut step = decoder.feed(stream).map(|()| Step::Unfinished);
+    loop {
+        match step {
+            Ok(Step::Waiting) => return (decoder, None),
+            Ok(_) => step = decoder.step_within(19),
+            Err(error) => return (decoder, Some(error)),
+        }
+    }
 }
 
 /// Decodes a stream that equals `stream` up to some byte, and checks that what comes before is there.

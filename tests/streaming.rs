@@ -9,7 +9,7 @@ use common::valid::assert_valid;
 use common::*;
 use lwc::{
     DecodeError, DecodeOptions, Decoder, EncodeOptions, LevelMesh, Limits, Partition, PassInfo, PassKind,
-    StreamInfo, TriMesh, Update, decode, encode,
+    Step, StreamInfo, TriMesh, Update, decode, encode,
 };
 
 /// Streams with splits inside and on the boundary, ears, several components, and refinements between
@@ -202,6 +202,77 @@ fn feeding_does_not_decode() {
     assert_eq!(decoder.passes_done(), 1);
     let rest = decoder.push(&[]).unwrap();
     assert_eq!(rest.len() + 1, info_of(&stream).passes().len());
+}
+
+/// Edges of the largest patch of these streams, or numbers of the longest array / 64.
+const LARGEST_ITEM: u64 = 16;
+
+#[test]
+fn work_in_slices_gives_the_same_passes_and_shows_only_those() {
+    for (name, stream) in streams() {
+        let steps = steps(&stream);
+        let mut whole = Decoder::new(Limits::default());
+        whole.push(&stream).unwrap();
+        let total = whole.work_done();
+        for work in [0, 1, 7, 50, 1000, u32::MAX] {
+            let mut decoder = Decoder::new(Limits::default());
+            let mut pieces = stream.chunks(30);
+            let (mut done, mut unfinished) = (0, 0);
+            while done < steps.len() {
+                let what = format!("{name}, {work} units, after pass {done}");
+                let before = decoder.work_done();
+                let step = decoder.step_within(work).unwrap();
+                let taken = decoder.work_done() - before;
+                assert!(taken <= u64::from(work.max(1)) + LARGEST_ITEM, "{what}: {taken} units");
+                match step {
+                    Step::Finished(update) => {
+                        assert_eq!(update, steps[done].0, "{what}");
+                        done += 1;
+                    }
+                    Step::Unfinished => {
+                        unfinished += 1;
+                        // Bytes may come at any time.
+                        decoder.feed(pieces.next().unwrap_or_default()).unwrap();
+                    }
+                    Step::Waiting => decoder.feed(pieces.next().unwrap()).unwrap(),
+                }
+                assert_eq!(decoder.passes_done(), done, "{what}");
+                let shown = decoder.mesh().map(Copied::from);
+                assert_eq!(shown.as_ref(), done.checked_sub(1).map(|i| &steps[i].1), "{what}");
+            }
+            assert!(decoder.is_complete());
+            assert_eq!(decoder.step_within(work), Ok(Step::Waiting));
+            assert!(if work < 50 { unfinished > 30 } else { work < u32::MAX || unfinished == 0 }, "{name}");
+            assert_eq!(decoder.work_done(), total, "{name}, {work} units: other work");
+        }
+    }
+}
+
+#[test]
+fn a_pass_that_rests_is_finished_by_whatever_comes_next() {
+    for (name, stream) in streams() {
+        let steps = steps(&stream);
+        for rests in [1, 5, 25] {
+            let mut decoder = Decoder::new(Limits::default());
+            decoder.feed(&stream).unwrap();
+            for (i, (update, mesh)) in steps.iter().enumerate() {
+                for _ in 0..rests {
+                    let (before, done) = (decoder.mesh().map(Copied::from), decoder.passes_done());
+                    if decoder.step_within(3).unwrap() != Step::Unfinished {
+                        break;
+                    }
+                    assert_eq!(decoder.mesh().map(Copied::from), before, "{name}");
+                    let preview = decoder.preview();
+                    assert_eq!(preview, decoder.mesh().map(|mesh| mesh.to_tri_mesh()), "{name}");
+                    assert_eq!(decoder.passes_done(), done, "{name}");
+                }
+                if decoder.passes_done() == i {
+                    assert_eq!(decoder.step().unwrap().as_ref(), Some(update), "{name}");
+                }
+                assert_eq!(&Copied::from(decoder.mesh().unwrap()), mesh, "{name}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -103,6 +103,13 @@ impl BitCoder for RangeEncoder {
     }
 }
 
+/// Where a decoder stands in its payload.
+pub(crate) struct RangeState {
+    code: u32,
+    range: u32,
+    next: usize,
+}
+
 /// Reads bits from one payload.
 pub(crate) struct RangeDecoder<'a> {
     code: u32,
@@ -127,6 +134,16 @@ impl<'a> RangeDecoder<'a> {
     /// Reads the beginning of a payload; bits that the missing bytes decide are the likelier ones.
     pub(crate) fn of_cut(bytes: &'a [u8]) -> Self {
         Self { end: bytes.len(), is_cut: true, ..Self::new(bytes) }
+    }
+
+    /// Goes on where a decoder of the same payload was.
+    pub(crate) fn resume(bytes: &'a [u8], state: &RangeState) -> Self {
+        let RangeState { code, range, next } = *state;
+        Self { code, range, bytes, next, end: bytes.len() + MAX_MISSING_ZEROS, is_cut: false }
+    }
+
+    pub(crate) fn pause(&self) -> RangeState {
+        RangeState { code: self.code, range: self.range, next: self.next }
     }
 
     #[inline]

@@ -137,9 +137,9 @@ impl FrameReader {
         Self { buffer: Vec::new(), read: 0, offset: 0, has_signature: false }
     }
 
-    /// Adds bytes behind those that are there.
-    pub(super) fn feed(&mut self, bytes: &[u8]) {
-        if self.read > 0 && self.read >= self.buffer.len() / 2 {
+    /// Adds bytes behind those that are there, which move if they may.
+    pub(super) fn feed(&mut self, bytes: &[u8], may_move: bool) {
+        if may_move && self.read > 0 && self.read >= self.buffer.len() / 2 {
             self.buffer.drain(..self.read);
             self.read = 0;
         }

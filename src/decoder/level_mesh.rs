@@ -2,12 +2,12 @@
 
 use crate::TriMesh;
 use crate::bitstream::header::Grid;
-use crate::passes::GridMesh;
 
 /// A borrowed view of the finest complete mesh: valid until the decoder takes more bytes.
 #[derive(Clone, Copy)]
 pub struct LevelMesh<'a> {
-    pub(super) mesh: &'a GridMesh,
+    pub(super) cells: &'a [[i32; 3]],
+    pub(super) triangles: &'a [[u32; 3]],
     pub(super) grid: &'a Grid,
     pub(super) precision: u32,
     pub(super) level: u32,
@@ -26,22 +26,22 @@ impl<'a> LevelMesh<'a> {
 
     /// Number of vertices.
     pub fn num_vertices(&self) -> usize {
-        self.mesh.positions.len()
+        self.cells.len()
     }
 
     /// Number of triangles.
     pub fn num_triangles(&self) -> usize {
-        self.mesh.surface.triangles.len()
+        self.triangles.len()
     }
 
     /// Vertex indices of the triangles, m × 3, counter-clockwise. Each directed edge occurs once.
     pub fn triangles(&self) -> &'a [[u32; 3]] {
-        &self.mesh.surface.triangles
+        self.triangles
     }
 
     /// Grid cells of the vertices, n × 3, each below 2^[`precision`](Self::precision).
     pub fn cells(&self) -> &'a [[i32; 3]] {
-        &self.mesh.positions
+        self.cells
     }
 
     /// Position of one vertex in model units: the middle of its cell.
@@ -53,7 +53,7 @@ impl<'a> LevelMesh<'a> {
         // Middle of the finest cells that share the known bits.
         let half = (f64::from(1_u32 << hidden) - 1.0) * 0.5;
         let steps = f64::from((1_u32 << self.grid.precision) - 1);
-        let cell = self.mesh.positions[vertex];
+        let cell = self.cells[vertex];
         std::array::from_fn(|axis| {
             let fine = f64::from(cell[axis] << hidden) + half;
             self.grid.origin[axis] + fine / steps * self.grid.side

@@ -4,7 +4,8 @@ mod frame;
 mod level_mesh;
 mod passes;
 mod push;
+mod running;
 
 pub use frame::{PassInfo, PassKind, StreamInfo};
 pub use level_mesh::LevelMesh;
-pub use push::{DecodeOptions, Decoder, Update, decode};
+pub use push::{DecodeOptions, Decoder, Step, Update, decode};

@@ -1,24 +1,26 @@
 //! One pass after the other, applied to the mesh.
 
 use super::frame::{PassInfo, PassKind};
+use super::running::Running;
 use crate::DecodeError;
 use crate::bitstream::header::Action;
 use crate::bitstream::range_coder::{BitCoder, RangeDecoder};
 use crate::limits::Limits;
 use crate::mesh::Surface;
-use crate::passes::connectivity::{self, ConnectivityModels};
-use crate::passes::coordinates::{self, CoordinateModels};
+use crate::passes::connectivity::ConnectivityModels;
+use crate::passes::coordinates::CoordinateModels;
 use crate::passes::patch::{Patches, StarBuilder};
-use crate::passes::refine::{self, RefineModels};
-use crate::passes::{EXHAUSTED, GridMesh, Malformed, base};
+use crate::passes::refine::RefineModels;
+use crate::passes::work::Work;
+use crate::passes::{EXHAUSTED, GridMesh, Malformed};
 
 /// The mesh and all that is learnt about it.
 #[derive(Clone)]
 pub(super) struct PassDecoder {
     pub(super) mesh: GridMesh,
-    connectivity: ConnectivityModels,
-    coordinates: CoordinateModels,
-    refine: RefineModels,
+    pub(super) connectivity: ConnectivityModels,
+    pub(super) coordinates: CoordinateModels,
+    pub(super) refine: RefineModels,
 }
 
 /// Bytes of memory that a vertex and a face of the finest mesh may take, working space included.
@@ -53,99 +55,83 @@ impl PassDecoder {
         }
     }
 
-    /// Applies one pass. After an error the mesh is the one from before.
+    /// Goes on with a pass; what it changed once it is over, `None` if the work is used up before.
+    /// After an error the mesh is the one from before the pass.
     ///
     /// # Errors
     /// If the payload names something that no encoder writes.
-    pub(super) fn apply(&mut self, pass: &PassInfo, payload: &[u8]) -> Result<Changes, Malformed> {
-        let mut coder = RangeDecoder::new(payload);
-        match pass.row.action {
-            Action::Base { precision } => {
-                let (vertices, faces) = (pass.vertices as usize, pass.faces as usize);
-                let mesh = base::code(&mut coder, vertices, faces, precision, None)?.mesh;
-                check_end(&coder)?;
-                self.mesh = mesh;
-                Ok(Changes { first_vertex: 0, rewritten_faces: Vec::new(), first_new_face: 0 })
-            }
-            Action::Split => self.split(&mut coder, pass),
-            Action::Refine => {
-                refine::code(&mut coder, &mut self.refine, &mut self.mesh, None);
-                if let Err(error) = check_end(&coder) {
-                    self.mesh.positions.iter_mut().flatten().for_each(|c| *c >>= 1);
-                    return Err(error);
-                }
-                let first_new_face = self.mesh.surface.triangles.len() as u32;
-                Ok(Changes { first_vertex: 0, rewritten_faces: Vec::new(), first_new_face })
-            }
+    pub(super) fn advance(
+        &mut self,
+        running: &mut Running,
+        pass: &PassInfo,
+        payload: &[u8],
+        work: &mut Work,
+    ) -> Result<Option<Changes>, Malformed> {
+        let mut coder = running.coder(payload);
+        let result = running.advance(self, pass, &mut coder, work).and_then(|patches| {
+            let Some(patches) = patches else { return Ok(None) };
+            check_end(&coder)?;
+            work.sweep(pass.faces as usize);
+            Ok(Some(Changes::of(pass, &patches)))
+        });
+        running.pause(&coder);
+        if result.is_err() {
+            self.roll_back(running);
+        }
+        result
+    }
+
+    /// Puts back the mesh from before a pass.
+    fn roll_back(&mut self, running: &mut Running) {
+        if let Some(positions) = running.old_positions.take() {
+            self.mesh.positions = positions;
+        }
+        if let Some(triangles) = running.old_triangles.take() {
+            let num_vertices = running.num_old_vertices;
+            self.mesh.positions.truncate(num_vertices);
+            self.mesh.roughness.truncate(num_vertices);
+            self.mesh.surface = Surface::from_triangles(triangles, num_vertices).unwrap_or_default();
         }
     }
 
     /// The mesh with the beginning of a pass: a split brings back the vertices whose coordinates are
     /// there, a refinement guesses the bits that are missing. `None` if the bytes tell nothing.
     pub(super) fn mesh_with_cut(&self, pass: &PassInfo, payload: &[u8]) -> Option<GridMesh> {
+        if pass.kind == PassKind::Base {
+            return None;
+        }
         let mut coder = RangeDecoder::of_cut(payload);
         let mut ahead = self.clone();
-        match pass.kind {
-            PassKind::Base => None,
-            PassKind::Refine => {
-                refine::code(&mut coder, &mut ahead.refine, &mut ahead.mesh, None);
-                Some(ahead.mesh)
-            }
-            PassKind::Split => {
-                // All of the connectivity is needed to read the coordinates, not to show them.
-                let patches = ahead.read_split(&mut coder, pass).ok()?;
-                let (first, count) = (self.mesh.positions.len(), ahead.mesh.positions.len());
-                let mut mesh = self.mesh.clone();
-                let mut builder = StarBuilder::new(first);
-                for patch in 0..count - first {
-                    builder.restore(&mut mesh.surface, &patches, patch).ok()?;
-                }
-                mesh.positions.extend_from_slice(&ahead.mesh.positions[first..]);
-                Some(mesh)
-            }
+        let mut running = Running::new(payload);
+        let patches = running.advance(&mut ahead, pass, &mut coder, &mut Work::unlimited()).ok()??;
+        if pass.kind == PassKind::Refine {
+            return Some(ahead.mesh);
         }
+        // All of the connectivity is needed to read the coordinates, not to show them.
+        let (first, count) = (self.mesh.positions.len(), ahead.mesh.positions.len());
+        let mut mesh = self.mesh.clone();
+        let mut builder = StarBuilder::new(first);
+        for patch in 0..count - first {
+            builder.restore(&mut mesh.surface, &patches, patch).ok()?;
+        }
+        mesh.positions.extend_from_slice(&ahead.mesh.positions[first..]);
+        Some(mesh)
     }
+}
 
-    fn split(&mut self, coder: &mut RangeDecoder, pass: &PassInfo) -> Result<Changes, Malformed> {
-        let before = self.mesh.surface.triangles.clone();
-        let num_coarse = self.mesh.positions.len();
-        let result = self.try_split(coder, pass);
-        if result.is_err()
-            && self.mesh.surface.triangles.len() + self.mesh.positions.len() != before.len() + num_coarse
-        {
-            self.mesh.positions.truncate(num_coarse);
-            self.mesh.roughness.truncate(num_coarse);
-            self.mesh.surface = Surface::from_triangles(before, num_coarse).unwrap_or_default();
+impl Changes {
+    /// What a pass with these patches changed.
+    fn of(pass: &PassInfo, patches: &Patches) -> Self {
+        let (first_vertex, first_new_face) = match pass.kind {
+            PassKind::Base => (0, 0),
+            PassKind::Split => (pass.vertices - pass.row.vertices, pass.faces - pass.row.faces),
+            PassKind::Refine => (0, pass.faces),
+        };
+        Self {
+            first_vertex,
+            rewritten_faces: patches.rewritten_faces(first_new_face as usize),
+            first_new_face,
         }
-        result
-    }
-
-    fn try_split(&mut self, coder: &mut RangeDecoder, pass: &PassInfo) -> Result<Changes, Malformed> {
-        let (first_vertex, first_face) = (self.mesh.positions.len(), self.mesh.surface.triangles.len());
-        let patches = self.read_split(coder, pass)?;
-        check_end(coder)?;
-        Ok(Changes {
-            first_vertex: first_vertex as u32,
-            rewritten_faces: patches.rewritten_faces(),
-            first_new_face: first_face as u32,
-        })
-    }
-
-    /// Connectivity, stars, coordinates; of a cut payload as many coordinates as there are.
-    fn read_split(&mut self, coder: &mut RangeDecoder, pass: &PassInfo) -> Result<Patches, Malformed> {
-        let count = pass.row.vertices as usize;
-        let mesh = &mut self.mesh;
-        let patches = connectivity::code(coder, &mut self.connectivity, mesh, count, None)?;
-        if patches.num_new_faces() != pass.row.faces as usize {
-            return Err(Malformed("a level has other faces than announced"));
-        }
-        let mut builder = StarBuilder::new(mesh.positions.len());
-        mesh.reserve(count, pass.row.faces as usize);
-        for patch in 0..patches.len() {
-            builder.restore(&mut mesh.surface, &patches, patch)?;
-        }
-        coordinates::code(coder, &mut self.coordinates, mesh, &patches, pass.precision, None)?;
-        Ok(patches)
     }
 }
 

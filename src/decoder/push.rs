@@ -3,10 +3,12 @@
 use super::frame::{self, Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
 use super::level_mesh::LevelMesh;
 use super::passes::{self, PassDecoder};
+use super::running::Running;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::{Grid, Provenance};
 use crate::limits::Limits;
 use crate::passes::GridMesh;
+use crate::passes::work::Work;
 use crate::{DecodeError, TriMesh};
 use std::ops::Range;
 
@@ -24,6 +26,17 @@ pub struct Update {
     pub new_triangles: Range<u32>,
     /// Older triangles with different vertices: ascending, disjoint ranges.
     pub rewritten_triangles: Vec<Range<u32>>,
+}
+
+/// What [`Decoder::step_within`] came to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// A pass is finished: the mesh has changed.
+    Finished(Update),
+    /// The work is used up amid a pass: the mesh is still that of the pass before.
+    Unfinished,
+    /// Bytes are missing, or nothing is left to do.
+    Waiting,
 }
 
 /// Decodes a stream as it arrives.
@@ -51,6 +64,9 @@ pub struct Decoder {
     /// Passes done.
     done: usize,
     passes: PassDecoder,
+    /// The pass that is half done, and its chunk.
+    running: Option<(Running, Chunk)>,
+    work_done: u64,
     failed: bool,
 }
 
@@ -71,6 +87,8 @@ impl Decoder {
             info: None,
             done: 0,
             passes: PassDecoder::new(),
+            running: None,
+            work_done: 0,
             failed: false,
         }
     }
@@ -104,7 +122,8 @@ impl Decoder {
         }
         let needed = self.frames.buffered() as u64 + bytes.len() as u64;
         Limits::check("memory", needed, self.limits.max_memory).inspect_err(|_| self.failed = true)?;
-        self.frames.feed(bytes);
+        // The payload of a pass that is half done must stay where it is.
+        self.frames.feed(bytes, self.running.is_none());
         Ok(())
     }
 
@@ -114,25 +133,63 @@ impl Decoder {
     /// # Errors
     /// As [`Decoder::push`].
     pub fn step(&mut self) -> Result<Option<Update>, DecodeError> {
+        match self.step_with(&mut Work::unlimited())? {
+            Step::Finished(update) => Ok(Some(update)),
+            Step::Unfinished | Step::Waiting => Ok(None),
+        }
+    }
+
+    /// As [`Decoder::step`], but does at most about `work` units of a pass and goes on with it in the
+    /// next call: for threads that have other things to do in time. Until the pass is finished all that
+    /// is seen of the mesh is that of the pass before.
+    ///
+    /// A unit is the work of an edge or a triangle, a fraction of a microsecond. The last thing done in a
+    /// call may be more than is left: a vertex with all its edges, or a copy of an array, which
+    /// counts one unit for 64 numbers. Only the links of a base mesh are not counted.
+    ///
+    /// ```
+    /// # fn run(mut decoder: lwc::Decoder, time_is_left: impl Fn() -> bool) -> Result<(), lwc::DecodeError> {
+    /// while time_is_left() {
+    ///     match decoder.step_within(1000)? {
+    ///         lwc::Step::Finished(update) => println!("{} vertices", update.pass.vertices),
+    ///         lwc::Step::Unfinished => {}
+    ///         lwc::Step::Waiting => break,
+    ///     }
+    /// }
+    /// # Ok(()) }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Decoder::push`].
+    pub fn step_within(&mut self, work: u32) -> Result<Step, DecodeError> {
+        self.step_with(&mut Work::units(work.max(1)))
+    }
+
+    fn step_with(&mut self, work: &mut Work) -> Result<Step, DecodeError> {
         if self.failed {
             return Err(DecodeError::Failed);
         }
-        self.try_step().inspect_err(|_| self.failed = true)
+        let result = self.try_step(work).inspect_err(|_| self.failed = true);
+        self.work_done += work.done();
+        result
     }
 
-    fn try_step(&mut self) -> Result<Option<Update>, DecodeError> {
+    fn try_step(&mut self, work: &mut Work) -> Result<Step, DecodeError> {
+        if let Some((running, chunk)) = self.running.take() {
+            return self.advance(running, chunk, work);
+        }
         self.read_info()?;
         while self.info.is_some() && !self.is_complete() {
             let Some(chunk) = self.frames.next_chunk(&self.limits)? else {
-                return Ok(None);
+                return Ok(Step::Waiting);
             };
             match chunk.kind {
-                kind::BASE | kind::SPLIT | kind::REFINE => return self.apply(&chunk).map(Some),
+                kind::BASE | kind::SPLIT | kind::REFINE => return self.begin(chunk, work),
                 kind::HEADER | kind::PASSES => return Err(out_of_order(&chunk)),
                 _ => skip(&chunk)?,
             }
         }
-        Ok(None)
+        Ok(Step::Waiting)
     }
 
     /// Reads chunks up to the table of passes.
@@ -162,22 +219,34 @@ impl Decoder {
         Ok(())
     }
 
-    fn apply(&mut self, chunk: &Chunk) -> Result<Update, DecodeError> {
+    fn begin(&mut self, chunk: Chunk, work: &mut Work) -> Result<Step, DecodeError> {
         let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
-        let pass = self.next_pass().copied().ok_or(malformed("a pass that was not announced"))?;
-        let payload = self.frames.payload(chunk);
+        let pass = self.next_pass().ok_or(malformed("a pass that was not announced"))?;
+        let payload = self.frames.payload(&chunk);
         if chunk.kind != pass.row.action.kind() || payload.len() != pass.row.bytes as usize {
             return Err(malformed("a pass differs from the table of passes"));
         }
-        passes::check_limits(&pass, &self.limits, self.frames.buffered())?;
-        let changes = self.passes.apply(&pass, payload).map_err(|e| malformed(e.0))?;
+        passes::check_limits(pass, &self.limits, self.frames.buffered())?;
+        self.advance(Running::new(payload), chunk, work)
+    }
+
+    /// Goes on with the next pass.
+    fn advance(&mut self, mut running: Running, chunk: Chunk, work: &mut Work) -> Result<Step, DecodeError> {
+        let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
+        let pass = self.next_pass().copied().ok_or(malformed("a pass that was not announced"))?;
+        let payload = self.frames.payload(&chunk);
+        let changes = self.passes.advance(&mut running, &pass, payload, work).map_err(|e| malformed(e.0))?;
+        let Some(changes) = changes else {
+            self.running = Some((running, chunk));
+            return Ok(Step::Unfinished);
+        };
         self.done += 1;
-        Ok(Update {
+        Ok(Step::Finished(Update {
             pass,
             vertices: changes.first_vertex..pass.vertices,
             new_triangles: changes.first_new_face..pass.faces,
             rewritten_triangles: changes.rewritten_faces,
-        })
+        }))
     }
 
     /// The pass that is decoded next, unless the stream or the wanted level is complete.
@@ -196,30 +265,32 @@ impl Decoder {
     pub fn mesh(&self) -> Option<LevelMesh<'_>> {
         let info = self.info.as_ref()?;
         let pass = info.passes.get(self.done.checked_sub(1)?)?;
-        Some(LevelMesh {
-            mesh: &self.passes.mesh,
-            grid: &info.grid,
-            precision: pass.precision,
-            level: pass.level,
-        })
+        let mesh = &self.passes.mesh;
+        let (cells, triangles) = match &self.running {
+            Some((running, _)) => running.mesh_before(mesh),
+            None => (&mesh.positions[..], &mesh.surface.triangles[..]),
+        };
+        let (precision, level) = (pass.precision, pass.level);
+        Some(LevelMesh { cells, triangles, grid: &info.grid, precision, level })
     }
 
     /// The mesh so far, with what has arrived of the next pass: vertices whose bytes are missing stay
     /// away, missing bits of coordinates are guessed. Nearly as good as if the stream were cut behind every
     /// vertex, but made of bytes whose checksum has not come yet, and of a copy of the mesh.
     ///
-    /// `None` before the base mesh is complete. Without such bytes, or without the memory, it is
-    /// [`Decoder::mesh`].
+    /// `None` before the base mesh is complete. Without such bytes, without the memory, or amid a pass
+    /// ([`Decoder::step_within`]) it is [`Decoder::mesh`].
     pub fn preview(&self) -> Option<TriMesh> {
         let complete = self.mesh()?;
         let Some((pass, mesh)) = self.mesh_with_cut() else {
             return Some(complete.to_tri_mesh());
         };
-        Some(LevelMesh { mesh: &mesh, precision: pass.precision, ..complete }.to_tri_mesh())
+        let (cells, triangles) = (&mesh.positions[..], &mesh.surface.triangles[..]);
+        Some(LevelMesh { cells, triangles, precision: pass.precision, ..complete }.to_tri_mesh())
     }
 
     fn mesh_with_cut(&self) -> Option<(&PassInfo, GridMesh)> {
-        let pass = self.next_pass()?;
+        let pass = self.next_pass().filter(|_| self.running.is_none())?;
         let (kind, payload) = self.frames.cut_chunk()?;
         // The coder reads four bytes ahead: fewer decide nothing.
         let is_next =
@@ -231,6 +302,12 @@ impl Decoder {
         let buffered = self.frames.buffered() as u64 + 2 * passes::memory_for(pass);
         passes::check_limits(pass, &self.limits, buffered as usize).ok()?;
         Some((pass, self.passes.mesh_with_cut(pass, payload)?))
+    }
+
+    /// Units of work done so far, see [`Decoder::step_within`]: the same for a stream however it is
+    /// cut and sliced.
+    pub fn work_done(&self) -> u64 {
+        self.work_done
     }
 
     /// Number of passes applied.

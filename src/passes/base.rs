@@ -1,6 +1,7 @@
 //! The base mesh M⁰ (`format/SPEC.md`, section 7.1): triangles grown over their edges, each new
 //! vertex predicted by the parallelogram over the edge it was reached by.
 
+use super::work::Work;
 use super::{GridMesh, Malformed};
 use crate::bitstream::mixer::PlainBits;
 use crate::bitstream::mixture::Mixture;
@@ -35,6 +36,7 @@ pub(crate) struct Base {
 /// Codes a base mesh of `num_vertices` and `num_faces` with `precision` bits per coordinate.
 ///
 /// Memory stays below a constant times the two counts, which the caller has checked.
+#[cfg(any(feature = "encoder", test))]
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     num_vertices: usize,
@@ -43,24 +45,8 @@ pub(crate) fn code<B: BitCoder>(
     target: Option<&BaseTarget>,
 ) -> Result<Base, Malformed> {
     let mut grower = Grower::new(num_vertices, num_faces, precision, target);
-    while grower.triangles.len() < num_faces {
-        match grower.gates.pop_front() {
-            None => grower.seed(coder)?,
-            Some(gate) if grower.opposite[gate as usize] == NO_CORNER => grower.grow(coder, gate)?,
-            Some(_) => {}
-        }
-    }
-    if grower.positions.len() != num_vertices {
-        return Err(Malformed("the base mesh has fewer vertices than announced"));
-    }
-    let surface = Surface::from_triangles(grower.triangles, num_vertices)
-        .map_err(|_| Malformed("the base mesh is not a surface"))?;
-    let mesh = GridMesh {
-        surface,
-        positions: grower.positions,
-        roughness: vec![[UNKNOWN_ROUGHNESS; 2]; num_vertices],
-    };
-    Ok(Base { mesh, vertex_source: grower.vertex_source, corner_source: grower.corner_source })
+    grower.code_some(coder, &mut Work::unlimited())?;
+    grower.finish()
 }
 
 /// How the place of a vertex is guessed.
@@ -71,9 +57,11 @@ enum Guess {
     RestOfSeed = 2,
 }
 
-struct Grower<'a> {
+/// A base mesh that grows.
+pub(crate) struct Grower<'a> {
     target: Option<&'a BaseTarget<'a>>,
     num_vertices: usize,
+    num_faces: usize,
     limit: i32,
     triangles: Vec<[u32; 3]>,
     opposite: Vec<u32>,
@@ -104,7 +92,7 @@ mod context {
 }
 
 impl<'a> Grower<'a> {
-    fn new(
+    pub(crate) fn new(
         num_vertices: usize,
         num_faces: usize,
         precision: u32,
@@ -115,6 +103,7 @@ impl<'a> Grower<'a> {
         Self {
             target,
             num_vertices,
+            num_faces,
             limit: (1_i64 << precision).min(i64::from(i32::MAX)) as i32,
             triangles: Vec::with_capacity(num_faces),
             opposite: Vec::with_capacity(3 * num_faces),
@@ -130,6 +119,41 @@ impl<'a> Grower<'a> {
             next_target_face: 0,
             target_face_done: vec![false; target_faces],
         }
+    }
+
+    /// Goes on; true if all triangles are there.
+    pub(crate) fn code_some<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        work: &mut Work,
+    ) -> Result<bool, Malformed> {
+        while self.triangles.len() < self.num_faces {
+            if !work.take(1) {
+                return Ok(false);
+            }
+            match self.gates.pop_front() {
+                None => self.seed(coder)?,
+                Some(gate) if self.opposite[gate as usize] == NO_CORNER => self.grow(coder, gate)?,
+                Some(_) => {}
+            }
+        }
+        Ok(true)
+    }
+
+    /// Links the triangles, once all are there.
+    pub(crate) fn finish(self) -> Result<Base, Malformed> {
+        let num_vertices = self.num_vertices;
+        if self.positions.len() != num_vertices {
+            return Err(Malformed("the base mesh has fewer vertices than announced"));
+        }
+        let surface = Surface::from_triangles(self.triangles, num_vertices)
+            .map_err(|_| Malformed("the base mesh is not a surface"))?;
+        let mesh = GridMesh {
+            surface,
+            positions: self.positions,
+            roughness: vec![[UNKNOWN_ROUGHNESS; 2]; num_vertices],
+        };
+        Ok(Base { mesh, vertex_source: self.vertex_source, corner_source: self.corner_source })
     }
 
     /// Starts a component: the first target triangle that is not coded yet.

@@ -2,6 +2,7 @@
 //! mesh are walked from gate to gate and grouped into patches.
 
 use super::patch::{CLOSED, Patches};
+use super::work::{SWEPT_PER_UNIT, Work};
 use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::bitstream::mixer::{MixedBit, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
@@ -98,6 +99,7 @@ enum Face {
 }
 
 /// Codes the patches of one level: exactly `count` of them when decoding.
+#[cfg(any(feature = "encoder", test))]
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     models: &mut ConnectivityModels,
@@ -105,13 +107,70 @@ pub(crate) fn code<B: BitCoder>(
     count: usize,
     target: Option<&ConnectivityTarget>,
 ) -> Result<Patches, Malformed> {
-    let mut walk = Walk::new(mesh, models, count, target);
-    walk.code_ears(coder)?;
-    walk.code_patches(coder)?;
-    if walk.patches.len() != count {
-        return Err(Malformed("a level has fewer vertices than announced"));
+    let mut walk = PausedWalk::new(mesh, count);
+    walk.code_some(coder, models, mesh, target, &mut Work::unlimited())?;
+    walk.finish()
+}
+
+/// A walk between two slices of work: all of it that is not borrowed.
+#[derive(Default)]
+pub(crate) struct PausedWalk {
+    count: usize,
+    patches: Patches,
+    faces: Vec<Face>,
+    around: Vec<Around>,
+    gates: VecDeque<u32>,
+    /// Faces whose corners `around` knows of.
+    num_counted: usize,
+    next_corner: u32,
+    next_seed: u32,
+}
+
+impl PausedWalk {
+    pub(crate) fn new(mesh: &GridMesh, count: usize) -> Self {
+        let surface = &mesh.surface;
+        let at = |&valence: &u32| Around { valence, ..Around::default() };
+        let around = surface.valence.iter().map(at).collect();
+        let faces = vec![Face::Undecided; surface.triangles.len()];
+        Self { count, faces, around, ..Self::default() }
     }
-    Ok(walk.patches)
+
+    /// Goes on; true if the walk is over. `mesh` and `target` must be those it began with.
+    pub(crate) fn code_some<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        models: &mut ConnectivityModels,
+        mesh: &GridMesh,
+        target: Option<&ConnectivityTarget>,
+        work: &mut Work,
+    ) -> Result<bool, Malformed> {
+        if !self.count_corners(&mesh.surface, work) {
+            return Ok(false);
+        }
+        let mut walk = Walk::resume(std::mem::take(self), mesh, models, target);
+        let is_over = walk.code_some(coder, work);
+        *self = walk.pause();
+        is_over
+    }
+
+    fn count_corners(&mut self, surface: &Surface, work: &mut Work) -> bool {
+        for block in surface.triangles[self.num_counted..].chunks(SWEPT_PER_UNIT) {
+            if !work.take(1) {
+                return false;
+            }
+            block.as_flattened().iter().for_each(|&v| self.around[v as usize].undecided += 1);
+            self.num_counted += block.len();
+        }
+        true
+    }
+
+    /// What was found, once the walk is over.
+    pub(crate) fn finish(self) -> Result<Patches, Malformed> {
+        if self.patches.len() != self.count {
+            return Err(Malformed("a level has fewer vertices than announced"));
+        }
+        Ok(self.patches)
+    }
 }
 
 struct Walk<'a> {
@@ -126,36 +185,60 @@ struct Walk<'a> {
     gates: VecDeque<u32>,
     /// Edges of the growing patch still to look at.
     frontier: Vec<u32>,
+    /// First corner whose ear is not coded yet.
+    next_corner: u32,
+    /// No face before this one can be a seed.
+    next_seed: u32,
 }
 
 impl<'a> Walk<'a> {
-    fn new(
+    fn resume(
+        paused: PausedWalk,
         mesh: &'a GridMesh,
         models: &'a mut ConnectivityModels,
-        count: usize,
         target: Option<&'a ConnectivityTarget>,
     ) -> Self {
-        let surface = &mesh.surface;
-        let at = |&valence: &u32| Around { valence, ..Around::default() };
-        let mut around: Vec<Around> = surface.valence.iter().map(at).collect();
-        surface.triangles.iter().flatten().for_each(|&v| around[v as usize].undecided += 1);
+        let PausedWalk { count, patches, faces, around, gates, num_counted: _, next_corner, next_seed } =
+            paused;
+        let (surface, positions) = (&mesh.surface, &mesh.positions[..]);
+        let frontier = Vec::new();
         Self {
             surface,
-            positions: &mesh.positions,
+            positions,
             models,
             target,
             count,
-            patches: Patches::default(),
-            faces: vec![Face::Undecided; surface.triangles.len()],
+            patches,
+            faces,
             around,
-            gates: VecDeque::new(),
-            frontier: Vec::new(),
+            gates,
+            frontier,
+            next_corner,
+            next_seed,
         }
     }
 
+    fn pause(self) -> PausedWalk {
+        let Self { count, patches, faces, around, gates, next_corner, next_seed, .. } = self;
+        let num_counted = faces.len();
+        PausedWalk { count, patches, faces, around, gates, num_counted, next_corner, next_seed }
+    }
+
+    /// Goes on until the walk is over (true) or the work is used up.
+    fn code_some<B: BitCoder>(&mut self, coder: &mut B, work: &mut Work) -> Result<bool, Malformed> {
+        Ok(self.code_ears(coder, work)? && self.code_patches(coder, work)?)
+    }
+
     /// Vertices of valence two that hang on a boundary edge, in the order of the corners.
-    fn code_ears<B: BitCoder>(&mut self, coder: &mut B) -> Result<(), Malformed> {
-        for corner in 0..self.surface.opposite.len() as u32 {
+    fn code_ears<B: BitCoder>(&mut self, coder: &mut B, work: &mut Work) -> Result<bool, Malformed> {
+        let end = self.surface.opposite.len() as u32;
+        while self.next_corner < end {
+            let corner = self.next_corner;
+            // Corners that face no boundary cost next to nothing.
+            if corner.is_multiple_of(64) && !work.take(1) {
+                return Ok(false);
+            }
+            self.next_corner += 1;
             if self.surface.across(corner) != NO_CORNER {
                 continue;
             }
@@ -169,7 +252,7 @@ impl<'a> Walk<'a> {
                 ends.iter().for_each(|&v| self.around[v].touch(1));
             }
         }
-        Ok(())
+        Ok(true)
     }
 
     fn check_room(&self) -> Result<(), Malformed> {
@@ -179,13 +262,9 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    fn code_patches<B: BitCoder>(&mut self, coder: &mut B) -> Result<(), Malformed> {
-        for seed in 0..self.faces.len() as u32 {
-            if self.faces[seed as usize] != Face::Undecided {
-                continue;
-            }
-            self.decide(coder, 3 * seed, true)?;
-            while let Some(gate) = self.gates.pop_front() {
+    fn code_patches<B: BitCoder>(&mut self, coder: &mut B, work: &mut Work) -> Result<bool, Malformed> {
+        while work.take(1) {
+            if let Some(gate) = self.gates.pop_front() {
                 if coder.is_exhausted() || coder.is_guessing() {
                     return Err(Malformed(EXHAUSTED));
                 }
@@ -193,9 +272,16 @@ impl<'a> Walk<'a> {
                 if beyond != NO_CORNER && self.faces[(beyond / 3) as usize] == Face::Undecided {
                     self.decide(coder, beyond, false)?;
                 }
+            } else {
+                let rest = &self.faces[self.next_seed as usize..];
+                let Some(skipped) = rest.iter().position(|&face| face == Face::Undecided) else {
+                    return Ok(true);
+                };
+                self.next_seed += skipped as u32;
+                self.decide(coder, 3 * self.next_seed, true)?;
             }
         }
-        Ok(())
+        Ok(false)
     }
 
     /// Codes whether the face of `corner` is in a patch, and the patch if so. `corner` faces the

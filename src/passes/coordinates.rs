@@ -4,6 +4,7 @@
 use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
 use super::patch::Patches;
 use super::surroundings::Surroundings;
+use super::work::Work;
 use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::residual::{Expectation, ResidualModel};
@@ -22,7 +23,8 @@ impl CoordinateModels {
 }
 
 /// Codes the cells of the vertices that `patches` brought back, in their order. `mesh.surface` is
-/// refined already, `mesh.positions` gets one entry per patch; of a cut payload as many as it tells.
+/// refined already, `mesh.positions` gets one entry per patch.
+#[cfg(any(feature = "encoder", test))]
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     models: &mut CoordinateModels,
@@ -31,9 +33,27 @@ pub(crate) fn code<B: BitCoder>(
     precision: u32,
     target: Option<&[[i32; 3]]>,
 ) -> Result<(), Malformed> {
+    code_some(coder, models, mesh, patches, precision, target, &mut Work::unlimited()).map(drop)
+}
+
+/// Goes on from the first vertex that has no position; true if all have one, or a cut payload has told what
+/// it can.
+pub(crate) fn code_some<B: BitCoder>(
+    coder: &mut B,
+    models: &mut CoordinateModels,
+    mesh: &mut GridMesh,
+    patches: &Patches,
+    precision: u32,
+    target: Option<&[[i32; 3]]>,
+    work: &mut Work,
+) -> Result<bool, Malformed> {
     let mut surroundings = Surroundings::default();
     let limit = 1_i64 << precision;
-    for patch in 0..patches.len() {
+    let first_odd = mesh.surface.corner_of.len() - patches.len();
+    for patch in mesh.positions.len() - first_odd..patches.len() {
+        if !work.take(patches.edges(patch).len()) {
+            return Ok(false);
+        }
         if coder.is_exhausted() {
             return Err(Malformed(EXHAUSTED));
         }
@@ -58,7 +78,7 @@ pub(crate) fn code<B: BitCoder>(
             };
             let value = models.residuals.code(coder, &expected, wanted[guess.axis]);
             if coder.is_guessing() {
-                return Ok(());
+                return Ok(true);
             }
             let value = value.filter(|&v| (0..limit).contains(&i64::from(v)));
             let value = value.ok_or(Malformed("a vertex lies outside the grid"))?;
@@ -68,5 +88,5 @@ pub(crate) fn code<B: BitCoder>(
         mesh.positions.push(position);
         mesh.roughness.push(vertex.roughness());
     }
-    Ok(())
+    Ok(true)
 }

@@ -12,6 +12,7 @@ pub(crate) mod guess;
 pub(crate) mod patch;
 pub(crate) mod refine;
 pub(crate) mod surroundings;
+pub(crate) mod work;
 
 use crate::mesh::Surface;
 
@@ -27,13 +28,18 @@ pub(crate) struct GridMesh {
 
 impl GridMesh {
     /// Makes room for exactly this much more.
+    #[cfg(feature = "encoder")]
     pub(crate) fn reserve(&mut self, vertices: usize, faces: usize) {
+        self.reserve_vertices(vertices);
+        self.surface.triangles.reserve_exact(faces);
+        self.surface.opposite.reserve_exact(3 * faces);
+    }
+
+    pub(crate) fn reserve_vertices(&mut self, vertices: usize) {
         self.positions.reserve_exact(vertices);
         self.roughness.reserve_exact(vertices);
         self.surface.corner_of.reserve_exact(vertices);
         self.surface.valence.reserve_exact(vertices);
-        self.surface.triangles.reserve_exact(faces);
-        self.surface.opposite.reserve_exact(3 * faces);
     }
 }
 

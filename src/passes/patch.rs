@@ -65,16 +65,18 @@ impl Patches {
         self.open_edges.iter().map(|&e| if e == CLOSED { 2 } else { 1 }).sum()
     }
 
-    /// The faces of all patches as ascending ranges.
-    pub(crate) fn rewritten_faces(&self) -> Vec<std::ops::Range<u32>> {
-        let mut faces = self.faces.clone();
-        faces.sort_unstable();
-        let mut ranges: Vec<std::ops::Range<u32>> = Vec::new();
-        for f in faces {
-            match ranges.last_mut() {
-                Some(range) if range.end == f => range.end += 1,
-                _ => ranges.push(f..f + 1),
+    /// The faces of all patches, among the first `num_coarse`, as ascending ranges.
+    pub(crate) fn rewritten_faces(&self, num_coarse: usize) -> Vec<std::ops::Range<u32>> {
+        let mut is_rewritten = vec![false; num_coarse];
+        self.faces.iter().for_each(|&f| is_rewritten[f as usize] = true);
+        let mut ranges = Vec::new();
+        let mut start = 0;
+        for run in is_rewritten.chunk_by(|a, b| a == b) {
+            let end = start + run.len() as u32;
+            if run[0] {
+                ranges.push(start..end);
             }
+            start = end;
         }
         ranges
     }

@@ -3,6 +3,7 @@
 use super::GridMesh;
 use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
 use super::surroundings::{NUM_CLASSES, Surroundings};
+use super::work::Work;
 use crate::bitstream::mixer::MixedBit;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
@@ -31,16 +32,33 @@ impl RefineModels {
 
 /// Doubles every coordinate and codes its new last bit, vertex by vertex. `target` holds the
 /// refined cells.
+#[cfg(any(feature = "encoder", test))]
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     models: &mut RefineModels,
     mesh: &mut GridMesh,
     target: Option<&[[i32; 3]]>,
 ) {
+    mesh.positions.iter_mut().flatten().for_each(|c| *c *= 2);
+    code_some(coder, models, mesh, &mut 0, target, &mut Work::unlimited());
+}
+
+/// Goes on with the vertex `next`, where all coordinates are doubled already; true if all are done.
+pub(crate) fn code_some<B: BitCoder>(
+    coder: &mut B,
+    models: &mut RefineModels,
+    mesh: &mut GridMesh,
+    next: &mut usize,
+    target: Option<&[[i32; 3]]>,
+    work: &mut Work,
+) -> bool {
     let tables = Tables::get();
     let mut surroundings = Surroundings::default();
-    mesh.positions.iter_mut().flatten().for_each(|c| *c *= 2);
-    for v in 0..mesh.positions.len() {
+    for v in *next..mesh.positions.len() {
+        if !work.take(mesh.surface.valence[v] as usize) {
+            *next = v;
+            return false;
+        }
         surroundings.gather_refined(mesh, v);
         let mut vertex = VertexGuess::new(&models.guesses, &surroundings);
         let class = surroundings.class();
@@ -72,4 +90,5 @@ pub(crate) fn code<B: BitCoder>(
             vertex.settle(&mut models.guesses, &guess, kind, value);
         }
     }
+    true
 }

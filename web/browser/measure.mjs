@@ -1,127 +1,66 @@
-// Sizes, decoding times and simulated loading times beside Draco and meshopt, in node's engine (V8, as in
-// Chromium), single-threaded. All three hold the same mesh on the same 12-bit grid.
+// Sizes, decoding times and loading times beside Draco and meshopt with the loaders of three.js, in headless
+// Chromium over a throttled connection. All three hold the same mesh on the same 12-bit grid. Everything is
+// run several times and the least time is given: this is what other work on the machine disturbs least.
 //   LWC=target/release/lwc node browser/measure.mjs [MESH …]
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
+import { createServer } from 'node:http';
 import { basename, join } from 'node:path';
 import { gzipSync } from 'node:zlib';
-import draco3d from 'draco3d';
-import { MeshoptDecoder, MeshoptEncoder } from 'meshoptimizer';
+import { build } from 'esbuild';
 import { Decoder, loadWasm } from '../dist/decoder.js';
-import { model, out, program, view } from './setup.mjs';
+import { encodeDraco, encodeMeshopt } from './peers.mjs';
+import { model, open, out, program, view } from './setup.mjs';
 
-const RUNS = 7;
-const BITS = 12;
+const RUNS = Number(process.env.RUNS ?? 9);
 const RATES = [1e6, 10e6, 100e6];
+const KINDS = ['lwc', 'draco', 'meshopt'];
+const NAMES = { lwc: 'lwc', draco: 'Draco', meshopt: 'meshopt GLB, gzip' };
 
-/** Milliseconds of processor time, so that other work on the machine does not count. */
-function now() {
-  const { user, system } = process.cpuUsage();
-  return (user + system) / 1000;
-}
+const at = (path) => new URL(path, import.meta.url);
+const wasm = await loadWasm(readFileSync(at('../dist/lwc.wasm')));
+const { outputFiles } = await build({
+  entryPoints: [at('measure-page.js').pathname],
+  bundle: true, format: 'esm', target: 'es2022', write: false, logLevel: 'error',
+});
+const libs = '../node_modules/three/examples/jsm/libs/draco/';
+const parts = {
+  '/': [Buffer.from('<!doctype html><script type="module" src="page.js"></script>'), 'text/html'],
+  '/page.js': [Buffer.from(outputFiles[0].contents), 'text/javascript'],
+  '/favicon.ico': [Buffer.alloc(0), 'image/x-icon'],
+  '/worker.js': [readFileSync(at('../viewer/embedded/worker.js')), 'text/javascript'],
+  '/lwc.wasm': [readFileSync(at('../dist/lwc.wasm')), 'application/wasm'],
+  '/draco/draco_decoder.wasm': [readFileSync(at(`${libs}draco_decoder.wasm`)), 'application/wasm'],
+  '/draco/draco_wasm_wrapper.js': [readFileSync(at(`${libs}draco_wasm_wrapper.js`)), 'text/javascript'],
+};
 
-const wasm = await loadWasm(readFileSync(new URL('../dist/lwc.wasm', import.meta.url)));
-const dracoEncoder = await draco3d.createEncoderModule({});
-const dracoDecoder = await draco3d.createDecoderModule({});
-await Promise.all([MeshoptEncoder.ready, MeshoptDecoder.ready]);
-
-/** Least time of some runs, milliseconds, and the last result. */
-function time(run) {
-  let least = Infinity;
-  let result;
-  for (let i = 0; i < RUNS; i += 1) {
-    const start = now();
-    result = run();
-    least = Math.min(least, now() - start);
-  }
-  return { milliseconds: least, result };
-}
-
-/** Least time after each pass. */
-function decodeLwc(bytes) {
-  const least = [];
-  let mesh;
-  for (let i = 0; i < RUNS; i += 1) {
-    const decoder = new Decoder(wasm);
-    const start = now();
-    decoder.feed(bytes);
-    let pass = 0;
-    while (decoder.step()) {
-      least[pass] = Math.min(least[pass] ?? Infinity, now() - start);
-      pass += 1;
+/** Serves the page, and the models at the rate that the address asks for. */
+async function serve(models) {
+  const server = createServer(async (request, response) => {
+    const { pathname, searchParams } = new URL(request.url, 'http://localhost');
+    if (parts[pathname]) {
+      const [bytes, type] = parts[pathname];
+      return response.writeHead(200, { 'Content-Type': type }).end(bytes);
     }
-    mesh = { info: decoder.info, cells: decoder.cells.slice(), indices: decoder.indices.slice() };
-    decoder.free();
-  }
-  return { after: least, mesh };
+    const { bytes, encoding } = models[pathname.slice(1)];
+    response.writeHead(200, {
+      'Content-Length': bytes.length, 'Cache-Control': 'no-store', ...(encoding ? { 'Content-Encoding': encoding } : {}),
+    });
+    const bytesPerMillisecond = Number(searchParams.get('rate')) / 8000;
+    const start = performance.now();
+    for (let sent = 0; sent < bytes.length; ) {
+      const due = Math.min(bytes.length, Math.ceil((performance.now() - start) * bytesPerMillisecond));
+      if (due > sent) response.write(bytes.subarray(sent, due));
+      sent = Math.max(sent, due);
+      await new Promise((resolve) => setTimeout(resolve, 1));
+    }
+    return response.end();
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return { url: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
 }
 
-function encodeDraco({ cells, indices }) {
-  const builder = new dracoEncoder.MeshBuilder();
-  const mesh = new dracoEncoder.Mesh();
-  builder.AddFacesToMesh(mesh, indices.length / 3, indices);
-  builder.AddFloatAttributeToMesh(mesh, dracoEncoder.POSITION, cells.length / 3, 3, Float32Array.from(cells));
-  const encoder = new dracoEncoder.Encoder();
-  encoder.SetSpeedOptions(0, 0);
-  encoder.SetAttributeQuantization(dracoEncoder.POSITION, BITS);
-  encoder.SetEncodingMethod(dracoEncoder.MESH_EDGEBREAKER_ENCODING);
-  const data = new dracoEncoder.DracoInt8Array();
-  const size = encoder.EncodeMeshToDracoBuffer(mesh, data);
-  return Int8Array.from({ length: size }, (_, i) => data.GetValue(i));
-}
-
-/** As DRACOLoader does it: decode, then positions and indices out of the module's memory. */
-function decodeDraco(bytes) {
-  const decoder = new dracoDecoder.Decoder();
-  const mesh = new dracoDecoder.Mesh();
-  const status = decoder.DecodeArrayToMesh(bytes, bytes.length, mesh);
-  if (!status.ok()) throw new Error(status.error_msg());
-  const faces = 3 * mesh.num_faces();
-  const indexBytes = 4 * faces;
-  const at = dracoDecoder._malloc(indexBytes);
-  decoder.GetTrianglesUInt32Array(mesh, indexBytes, at);
-  const indices = new Uint32Array(dracoDecoder.HEAPF32.buffer, at, faces).slice();
-  dracoDecoder._free(at);
-  const positionBytes = 12 * mesh.num_points();
-  const to = dracoDecoder._malloc(positionBytes);
-  const attribute = decoder.GetAttribute(mesh, decoder.GetAttributeId(mesh, dracoDecoder.POSITION));
-  decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, dracoDecoder.DT_FLOAT32, positionBytes, to);
-  new Float32Array(dracoDecoder.HEAPF32.buffer, to, positionBytes / 4).slice();
-  dracoDecoder._free(to);
-  dracoDecoder.destroy(mesh);
-  dracoDecoder.destroy(decoder);
-  return indices.length / 3;
-}
-
-/** Positions as 16-bit integers, in the order that compresses best; what a GLB holds beside a little JSON. */
-function encodeMeshopt({ cells, indices }) {
-  const sorted = indices.slice();
-  const [remap, count] = MeshoptEncoder.reorderMesh(sorted, true, true);
-  const vertices = new Uint16Array(4 * count);
-  remap.forEach((to, from) => vertices.set(cells.subarray(3 * from, 3 * from + 3), 4 * to));
-  return {
-    vertices: MeshoptEncoder.encodeVertexBuffer(new Uint8Array(vertices.buffer), count, 8),
-    indices: MeshoptEncoder.encodeIndexBuffer(new Uint8Array(sorted.buffer), sorted.length, 4),
-    count,
-    numIndices: sorted.length,
-  };
-}
-
-function decodeMeshopt({ vertices, indices, count, numIndices }) {
-  MeshoptDecoder.decodeVertexBuffer(new Uint8Array(8 * count), count, 8, vertices);
-  MeshoptDecoder.decodeIndexBuffer(new Uint8Array(4 * numIndices), numIndices, 4, indices);
-}
-
-/** When the pass is there if passes are decoded as they come. */
-function arrival(passes, after, upTo, rate) {
-  let time = 0;
-  for (let i = 0; i <= upTo; i += 1) {
-    const work = after[i] - (after[i - 1] ?? 0);
-    time = Math.max(time, (8000 * passes[i].end) / rate) + work;
-  }
-  return time;
-}
-
+/** Decibels of all passes, from the program. */
 async function quality(path, passes) {
   const server = await view(path);
   try {
@@ -135,38 +74,90 @@ async function quality(path, passes) {
   }
 }
 
-async function measure(path) {
-  const bytes = new Uint8Array(readFileSync(path));
-  const { after, mesh } = decodeLwc(bytes);
-  const draco = encodeDraco(mesh);
-  const dracoTime = time(() => decodeDraco(draco)).milliseconds;
-  const meshopt = encodeMeshopt(mesh);
-  const meshoptTime = time(() => decodeMeshopt(meshopt)).milliseconds;
-  const meshoptBytes = meshopt.vertices.length + meshopt.indices.length;
-  const zipped = gzipSync(meshopt.vertices, { level: 9 }).length + gzipSync(meshopt.indices, { level: 9 }).length;
+/** Least of several results, number by number. */
+async function least(run) {
+  let best;
+  for (let i = 0; i < RUNS; i += 1) {
+    const found = await run();
+    best = best ? best.map((x, k) => Math.min(x, found[k])) : found;
+  }
+  return best;
+}
 
-  const { passes } = mesh.info;
-  const db = await quality(path, passes.length);
+/** Processor time of the decoder alone, and its longest call of 1000 units. */
+function decodeAlone(bytes) {
+  const now = () => {
+    const { user, system } = process.cpuUsage();
+    return (user + system) / 1000;
+  };
+  const decoder = new Decoder(wasm);
+  decoder.feed(bytes);
+  let longest = 0;
+  const start = now();
+  for (let before = start; decoder.stepWithin(1000).type !== 'waiting'; before = now()) {
+    longest = Math.max(longest, now() - before);
+  }
+  const whole = now() - start;
+  decoder.free();
+  return [whole, longest];
+}
+
+async function measure(path) {
+  const bytes = readFileSync(path);
+  const decoder = new Decoder(wasm);
+  decoder.push(bytes);
+  const { info } = decoder;
+  const mesh = { cells: decoder.cells.slice(), indices: decoder.indices.slice() };
+  decoder.free();
+  const models = {
+    'model.lwc': { bytes },
+    'model.drc': { bytes: encodeDraco(mesh) },
+    'model.glb': { bytes: gzipSync(encodeMeshopt(mesh), { level: 9 }), encoding: 'gzip' },
+  };
+  const db = await quality(path, info.passes.length);
   const final = Math.max(...db.filter((x) => x !== null));
-  const ninety = db.findIndex((x) => x === null || x >= 0.9 * final);
-  const vertices = passes.at(-1).vertices;
-  const whole = after.at(-1);
+  const ninety = 1 + db.findIndex((x) => x === null || x >= 0.9 * final);
+
+  const server = await serve(models);
+  const { page, close } = await open(server.url);
+  await page.waitForFunction(() => globalThis.stall);
   const ms = (x) => x.toFixed(x < 10 ? 1 : 0);
-  console.log(`\n${basename(path)}: ${vertices} vertices\n`);
-  console.log('| | bytes | decode, ms | million vertices/s |\n|---|--:|--:|--:|');
-  const row = (name, size, t) => console.log(`| ${name} | ${size} | ${ms(t)} | ${(vertices / t / 1000).toFixed(2)} |`);
-  row('lwc', bytes.length, whole);
-  row('Draco', draco.length, dracoTime);
-  row('meshopt', meshoptBytes, meshoptTime);
-  row('meshopt, gzip', zipped, meshoptTime);
-  const longest = Math.max(...after.map((t, i) => t - (after[i - 1] ?? 0)));
-  console.log(`\nlongest pass ${ms(longest)} ms\n`);
-  console.log('| ms until | first triangle | 90 % of the last dB | the end | Draco | meshopt, gzip |');
-  console.log('|---|--:|--:|--:|--:|--:|');
-  for (const rate of RATES) {
-    const cells = [0, ninety, passes.length - 1].map((pass) => arrival(passes, after, pass, rate));
-    cells.push((8000 * draco.length) / rate + dracoTime, (8000 * zipped) / rate + meshoptTime);
-    console.log(`| ${rate / 1e6} Mbit/s | ${cells.map(ms).join(' | ')} |`);
+  try {
+    const decoded = {};
+    const stalls = {};
+    for (const kind of KINDS) {
+      [decoded[kind]] = await least(async () => [await page.evaluate((kind) => globalThis.decode(kind), kind)]);
+      [stalls[kind]] = await least(async () => [await page.evaluate((kind) => globalThis.stall(kind), kind)]);
+    }
+    const loads = [];
+    let slice = Infinity;
+    for (const rate of RATES) {
+      const run = (kind) => page.evaluate(([kind, rate]) => globalThis.run(kind, rate), [kind, rate]);
+      const ours = await least(async () => {
+        const { meshes, end, longestSlice } = await run('lwc');
+        slice = Math.min(slice, longestSlice);
+        return [meshes[0].milliseconds, meshes.find(({ passes }) => passes >= ninety).milliseconds, end];
+      });
+      const others = await least(async () => [(await run('draco')).end, (await run('meshopt')).end]);
+      loads.push(`| ${rate / 1e6} Mbit/s | ${[...ours, ...others].map(ms).join(' | ')} |`);
+    }
+    console.log(`\n${basename(path)}: ${info.passes.at(-1).vertices} vertices\n`);
+    console.log("| | bytes | bytes in memory to buffers, ms | lwc's time is | longest stall of the page's thread, ms |");
+    console.log('|---|--:|--:|--:|--:|');
+    const sizes = { lwc: 'model.lwc', draco: 'model.drc', meshopt: 'model.glb' };
+    for (const kind of KINDS) {
+      const ratio = kind === 'lwc' ? '' : `${(decoded.lwc / decoded[kind]).toFixed(1)} times this`;
+      const size = models[sizes[kind]].bytes.length;
+      console.log(`| ${NAMES[kind]} | ${size} | ${ms(decoded[kind])} | ${ratio} | ${ms(stalls[kind])} |`);
+    }
+    console.log('\n| ms until | first triangle | 90 % of the last dB | the end | Draco | meshopt GLB, gzip |');
+    console.log(`|---|--:|--:|--:|--:|--:|\n${loads.join('\n')}`);
+    const [whole, longest] = await least(async () => decodeAlone(bytes));
+    console.log(`\nlongest slice of the worker ${ms(slice)} ms (8 asked for); decoder alone in node, processor time:`);
+    console.log(`${ms(whole)} ms, longest call of 1000 units ${ms(longest)} ms`);
+  } finally {
+    await close();
+    server.close();
   }
 }
 
@@ -174,6 +165,6 @@ const meshes = process.argv.slice(2);
 if (meshes.length === 0) await measure(model().path);
 for (const mesh of meshes) {
   const path = join(out, `${basename(mesh).split('.')[0]}.lwc`);
-  execFileSync(program, ['encode', mesh, '-q', String(BITS), '-o', path, '--quiet']);
+  execFileSync(program, ['encode', mesh, '-q', '12', '-o', path, '--quiet']);
   await measure(path);
 }

@@ -54,6 +54,7 @@ const figures = pictures.map(
 await page.setViewportSize({ width: 5 * 280, height: 340 });
 await page.goto('about:blank');
 await page.setContent(`<style>
+  html { background: #14171c }
   body { margin: 0; display: flex; background: #14171c; color: #e6e9ee; font: 15px/1.4 system-ui, sans-serif }
   figure { margin: 0; width: 280px; text-align: center } img { width: 280px; height: 280px }
   figcaption { padding: 4px 0 8px }

@@ -103,8 +103,9 @@ export async function open(url, viewport = { width: 1280, height: 800 }) {
 /** What the page records of itself. */
 export function record(page) {
   return page.evaluate(() => {
-    const { history, complete, error, longestSlice, longestFrame, geometry } = globalThis.lwc;
-    return { history: [...history], complete, error, longestSlice, longestFrame, drawn: geometry?.drawRange.count ?? 0 };
+    const { history, complete, error, longestSlice, workerSlice, longestFrame, geometry } = globalThis.lwc;
+    const drawn = geometry?.drawRange.count ?? 0;
+    return { history: [...history], complete, error, longestSlice, workerSlice, longestFrame, drawn };
   });
 }
 

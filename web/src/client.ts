@@ -12,8 +12,7 @@ export interface WorkerOptions extends DecodeOptions {
   /** Default: `lwc.wasm` beside this file. */
   wasmURL?: string | URL;
   /**
-   * The worker looks for new bytes and requests at least this often, in milliseconds; but a pass that
-   * takes longer is not interrupted. Default 8.
+   * The worker looks for new bytes and requests about this often, in milliseconds. Default 8.
    */
   slice?: number;
 }

@@ -16,7 +16,9 @@ interface Exports {
   destroy(handle: number): void;
   input(handle: number, length: number): number;
   feed(handle: number): number;
-  step(handle: number): number;
+  step(handle: number, work: number): number;
+  work_done(handle: number): number;
+  prepare(handle: number, elements: number): number;
   report(handle: number): number;
   report_length(handle: number): number;
   info(handle: number): number;
@@ -101,9 +103,18 @@ export interface Update {
   vertices: Range;
   /** Triangles that are new. */
   newTriangles: Range;
-  /** Older triangles with other vertices: ascending, disjoint. */
+  /** Runs of older triangles, most of them with other vertices: ascending, disjoint. */
   rewrittenTriangles: Range[];
 }
+
+/** What {@link Decoder.stepWithin} came to. */
+export type Step =
+  /** A pass is finished: the mesh has changed. */
+  | { type: 'finished'; update: Update }
+  /** The work is used up amid a pass: the mesh is still that of the pass before. */
+  | { type: 'unfinished' }
+  /** Bytes are missing, or nothing is left to do. */
+  | { type: 'waiting' };
 
 export type DecodeErrorKind =
   | 'NotAStream'
@@ -126,7 +137,12 @@ export class DecodeError extends Error {
 }
 
 const ERRORS: DecodeErrorKind[] = ['NotAStream', 'Unsupported', 'Checksum', 'Malformed', 'Limit', 'Failed'];
-const FIRST_ERROR = 2;
+const FIRST_ERROR = 3;
+const ALL = 0xffffffff;
+/** Units of work between two looks at the clock: about a fifth of a millisecond. @internal */
+export const WORK = 1000;
+/** The same for vertices and triangles to prepare. */
+const ELEMENTS = 8192;
 const KINDS: PassKind[] = ['base', 'split', 'refine'];
 
 /** How to decode, and what a stream that is not trusted may ask for. */
@@ -153,7 +169,7 @@ export class Decoder {
   constructor(wasm: Wasm, options: DecodeOptions = {}) {
     this.#wasm = wasm.exports;
     this.#handle = this.#wasm.create(
-      options.level ?? 0xffffffff,
+      options.level ?? ALL,
       options.maxMemory ?? 2 ** 30,
       options.maxVertices ?? 2 ** 25,
       options.relative ? 1 : 0,
@@ -178,7 +194,24 @@ export class Decoder {
 
   /** Applies the next pass if all its bytes are there. */
   step(): Update | undefined {
-    if (this.#check(this.#wasm.step(this.#handle)) === 0) return undefined;
+    for (;;) {
+      const step = this.stepWithin(ALL);
+      if (step.type === 'finished') return step.update;
+      if (step.type === 'waiting') return undefined;
+    }
+  }
+
+  /**
+   * Does at most about `work` units of the next pass and goes on with it in the next call. A unit is the
+   * work of an edge or a triangle, a fraction of a microsecond.
+   */
+  stepWithin(work: number): Step {
+    const code = this.#check(this.#wasm.step(this.#handle, work));
+    if (code === 1) return { type: 'finished', update: this.#report() };
+    return { type: code === 2 ? 'unfinished' : 'waiting' };
+  }
+
+  #report(): Update {
     this.#done += 1;
     const words = this.#words(this.#wasm.report(this.#handle), this.#wasm.report_length(this.#handle));
     const [, , , index, firstVertex, endVertex, firstNew, endNew] = words as unknown as number[];
@@ -196,18 +229,35 @@ export class Decoder {
   }
 
   /**
-   * Applies passes until `milliseconds` are over; returns what was done, and `more` if passes may be
-   * waiting. A pass is not interrupted: the last one of a call may exceed the time.
+   * Decodes until `milliseconds` are over, amid a pass if need be; returns the passes that were finished, and
+   * `more` if there is more to do.
    */
   stepFor(milliseconds: number): { updates: Update[]; more: boolean } {
     const updates = [];
     const end = performance.now() + milliseconds;
     do {
-      const update = this.step();
-      if (!update) return { updates, more: false };
-      updates.push(update);
+      const step = this.stepWithin(WORK);
+      if (step.type === 'waiting') return { updates, more: false };
+      if (step.type === 'finished') updates.push(step.update);
     } while (performance.now() < end);
     return { updates, more: true };
+  }
+
+  /**
+   * Brings positions, normals and the expected error up to date, as far as that is done in `milliseconds`;
+   * true once they are. To ask for one of them does the rest, however long it takes.
+   */
+  prepareFor(milliseconds: number): boolean {
+    const end = performance.now() + milliseconds;
+    do {
+      if (this.#wasm.prepare(this.#handle, ELEMENTS) === 1) return true;
+    } while (performance.now() < end);
+    return false;
+  }
+
+  /** Units of work done so far: the same for a stream however it is cut and sliced. */
+  get workDone(): number {
+    return this.#wasm.work_done(this.#handle);
   }
 
   /** What the stream says of itself, once its table of passes has arrived. */

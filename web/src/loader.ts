@@ -29,6 +29,8 @@ export interface Refinement {
   /** A guess of the RMS distance to the finest mesh, model units; NaN without normals. */
   expectedError: number;
   decodeMilliseconds: number;
+  /** Longest time that the worker was busy at a stretch so far, milliseconds. */
+  longestSlice: number;
 }
 
 export type OnRefine = (geometry: RefinedGeometry, refinement: Refinement) => void;
@@ -75,6 +77,7 @@ export class LWCLoader extends Loader<RefinedGeometry> {
   /** In place of the browser's own. */
   fetch: Fetch | undefined;
   #loads = new Set<Running>();
+  #spare: { worker: DecoderWorker; hasNormals: boolean } | undefined;
 
   constructor(manager?: LoadingManager) {
     super(manager);
@@ -82,7 +85,31 @@ export class LWCLoader extends Loader<RefinedGeometry> {
 
   setDecoderOptions(options: WorkerOptions): this {
     this.decoderOptions = options;
+    this.#dropSpare();
     return this;
+  }
+
+  /** Starts a worker for the next load, which then need not wait for one. */
+  preload(): this {
+    this.#spare ??= { worker: this.#newWorker(), hasNormals: this.normals };
+    return this;
+  }
+
+  /** A worker that nobody else has. @internal */
+  takeWorker(): DecoderWorker {
+    if (this.#spare?.hasNormals !== this.normals) this.#dropSpare();
+    const worker = this.#spare?.worker ?? this.#newWorker();
+    this.#spare = undefined;
+    return worker;
+  }
+
+  #newWorker(): DecoderWorker {
+    return new DecoderWorker({ ...this.decoderOptions, shade: this.normals });
+  }
+
+  #dropSpare(): void {
+    this.#spare?.worker.close();
+    this.#spare = undefined;
   }
 
   setErrorTarget(target: ErrorTarget | undefined): this {
@@ -157,7 +184,7 @@ class Refined {
     readonly received: () => number,
     readonly onRefine: OnRefine | undefined,
   ) {
-    this.worker = new DecoderWorker({ ...loader.decoderOptions, shade: loader.normals });
+    this.worker = loader.takeWorker();
   }
 
   async untilDone(): Promise<RefinedGeometry> {
@@ -168,10 +195,10 @@ class Refined {
       this.geometry ??= RefinedGeometry.of(info, this.loader.normals, this.loader.decoderOptions.level);
       await this.geometry.refine(update, this.loader.slice);
       this.last = update;
-      const { pass, passesDone, isComplete, expectedError, decodeMilliseconds } = update;
+      const { pass, passesDone, isComplete, expectedError, decodeMilliseconds, longestSlice } = update;
       const bytes = this.received();
       this.onRefine?.(this.geometry, {
-        info, pass, passesDone, isComplete, bytes, expectedError, decodeMilliseconds,
+        info, pass, passesDone, isComplete, bytes, expectedError, decodeMilliseconds, longestSlice,
       });
     }
     if (!this.geometry) {

@@ -42,4 +42,6 @@ export interface MeshUpdate {
   expectedError: number;
   /** Time that decoding has taken in the worker so far. */
   decodeMilliseconds: number;
+  /** Longest time that the worker was busy at a stretch so far. */
+  longestSlice: number;
 }

@@ -1,7 +1,7 @@
 /** Decodes in a worker and hands over what changed, no faster than the page takes it. @module */
 
 import { Changes } from './changes.js';
-import { DecodeError, Decoder, loadWasm } from './decoder.js';
+import { DecodeError, Decoder, WORK, loadWasm } from './decoder.js';
 import type { FromWorker, MeshUpdate, ToWorker } from './messages.js';
 
 const scope = globalThis as unknown as {
@@ -22,6 +22,7 @@ let fed = 0;
 let error: { kind: DecodeError['kind'] | undefined; message: string } | undefined;
 let sent = { vertices: 0, triangles: 0 };
 let decodeMilliseconds = 0;
+let longestSlice = 0;
 const changes = new Changes();
 const box: MeshUpdate['box'] = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
 
@@ -48,55 +49,67 @@ scope.onmessage = async ({ data }) => {
 async function run(): Promise<void> {
   if (!decoder) return;
   isRunning = true;
-  while (decodeSlice(decoder)) {
-    answer(decoder, true);
-    await nextTask();
-  }
+  while (workSlice(decoder)) await nextTask();
   isRunning = false;
   if (fed > 0) scope.postMessage({ type: 'decoded', pieces: fed });
   fed = 0;
-  answer(decoder, false);
+  answerEnd(decoder);
 }
 
-/** True if passes may be waiting still. */
-function decodeSlice(decoder: Decoder): boolean {
+/** True if there is more to do. */
+function workSlice(decoder: Decoder): boolean {
   const start = performance.now();
+  const isShowing = isTaken && isDirty;
+  const more = isShowing ? showSlice(decoder) : decodeSlice(decoder);
+  const milliseconds = performance.now() - start;
+  decodeMilliseconds += milliseconds;
+  longestSlice = Math.max(longestSlice, milliseconds);
+  return more || (isTaken && isDirty);
+}
+
+/** The mesh goes out before decoding goes on. */
+function showSlice(decoder: Decoder): boolean {
+  if (!decoder.prepareFor(slice)) return true;
+  isTaken = false;
+  isDirty = false;
+  send(decoder);
+  return true;
+}
+
+function decodeSlice(decoder: Decoder): boolean {
   const pieces = waiting.splice(0);
   fed += pieces.length;
   if (error) return false;
   try {
     for (const bytes of pieces) decoder.feed(bytes);
-    for (;;) {
-      const update = decoder.step();
+    const end = performance.now() + slice;
+    do {
+      const step = decoder.stepWithin(WORK);
       if (!hasInfo && decoder.info) {
         hasInfo = true;
         scope.postMessage({ type: 'info', info: decoder.info });
       }
-      if (!update) return false;
-      changes.add(update, sent.triangles);
-      isDirty = true;
-      if (performance.now() - start >= slice) return true;
-    }
+      if (step.type === 'waiting') return false;
+      if (step.type === 'finished') {
+        changes.add(step.update, sent.triangles);
+        isDirty = true;
+      }
+    } while (performance.now() < end);
+    return true;
   } catch (caught) {
     const kind = caught instanceof DecodeError ? caught.kind : undefined;
     error = { kind, message: caught instanceof Error ? caught.message : String(caught) };
     return false;
-  } finally {
-    decodeMilliseconds += performance.now() - start;
   }
 }
 
-/** Gives what was asked for: the mesh first, then what is wrong with the stream, or its end. */
-function answer(decoder: Decoder, more: boolean): void {
-  if (!isTaken || waiting.length > 0) return;
-  if (isDirty) {
-    isTaken = false;
-    isDirty = false;
-    send(decoder);
-  } else if (error) {
+/** After the last mesh: what is wrong with the stream, or its end. */
+function answerEnd(decoder: Decoder): void {
+  if (!isTaken) return;
+  if (error) {
     isTaken = false;
     scope.postMessage({ type: 'error', ...error });
-  } else if (!more && (hasEnded || decoder.isComplete)) {
+  } else if (hasEnded || decoder.isComplete) {
     isTaken = false;
     scope.postMessage({ type: 'done' });
   }
@@ -133,6 +146,7 @@ function send(decoder: Decoder): void {
     box: [...box],
     expectedError: decoder.expectedError,
     decodeMilliseconds,
+    longestSlice,
   };
   sent = { vertices: pass.vertices, triangles: pass.faces };
   changes.clear();

@@ -99,16 +99,59 @@ test('a level can be asked for, and a cut stream is a coarser mesh', () => {
   assert.ok(cut.pass.vertices > 0 && cut.pass.end <= bytes.length / 2);
 });
 
-test('passes are done in slices', () => {
-  const decoder = new Decoder(wasm);
-  decoder.feed(read('torus.lwc'));
-  const first = decoder.stepFor(0);
-  assert.equal(first.updates.length, 1);
-  assert.ok(first.more);
-  const rest = decoder.stepFor(60_000);
-  assert.equal(first.updates.length + rest.updates.length, decoder.info.passes.length);
-  assert.equal(rest.more, false);
+// Units, not milliseconds: a busy machine changes nothing.
+test('a call does no more work than it may, and the mesh waits for the end of the pass', () => {
+  // A patch with all its edges, or the longest array of these meshes / 64.
+  const largestItem = 100;
+  for (const name of names) {
+    const whole = new Decoder(wasm);
+    const updates = whole.push(read(name));
+    const decoder = new Decoder(wasm);
+    decoder.feed(read(name));
+    for (const [i, update] of updates.entries()) {
+      const before = decoder.checksum();
+      for (;;) {
+        const done = decoder.workDone;
+        const step = decoder.stepWithin(20);
+        assert.ok(decoder.workDone - done <= 20 + largestItem, `${name}: ${decoder.workDone - done} units`);
+        if (step.type === 'finished') {
+          assert.deepEqual(step.update, update);
+          break;
+        }
+        assert.equal(step.type, 'unfinished');
+        assert.equal(decoder.passesDone, i);
+        assert.equal(decoder.checksum(), before);
+        assert.ok(decoder.indices.every((v) => 3 * v < decoder.positions.length));
+      }
+    }
+    assert.equal(decoder.stepWithin(20).type, 'waiting');
+    assert.equal(decoder.workDone, whole.workDone);
+    assert.equal(decoder.checksum(), whole.checksum());
+    decoder.free();
+    whole.free();
+  }
+});
+
+test('slices of no time come to the same mesh', () => {
+  const decoder = new Decoder(wasm, { shade: true });
+  decoder.feed(read('genus-3.lwc'));
+  const updates = [];
+  let slices = 0;
+  for (let more = true; more; slices += 1) {
+    const slice = decoder.stepFor(0);
+    updates.push(...slice.updates);
+    ({ more } = slice);
+    if (slices % 3 === 0) decoder.prepareFor(0);
+  }
+  assert.ok(decoder.isComplete && slices > updates.length, `${slices} slices`);
+  while (!decoder.prepareFor(0));
+  const whole = new Decoder(wasm, { shade: true });
+  assert.deepEqual(updates, whole.push(read('genus-3.lwc')));
+  assert.deepEqual(decoder.positions, whole.positions);
+  assert.deepEqual(decoder.normals, whole.normals);
+  assert.equal(decoder.expectedError, whole.expectedError);
   decoder.free();
+  whole.free();
 });
 
 test('errors have the kinds of the library and keep the last good mesh', () => {

@@ -7,6 +7,7 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { LWCLoader, RefinedGeometry, type Load, type Refinement } from '../../src/loader.js';
 import { Kept, throttle } from './network.js';
+import { Wires } from './wires.js';
 
 function element<T extends HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
@@ -29,12 +30,19 @@ key.position.set(-2, 1.6, 0.5);
 camera.add(key);
 scene.add(new HemisphereLight(0xb9cdf2, 0x2b2620, 0.7), camera);
 const material = new MeshStandardMaterial({ color: 0xc9ced6, roughness: 0.72, side: 2 });
-const wires = new MeshStandardMaterial({ color: 0x6cb6ff, wireframe: true, transparent: true, opacity: 0.35 });
 const mesh = new Mesh<RefinedGeometry>(undefined, material);
-const wire = new Mesh<RefinedGeometry>(undefined, wires);
-mesh.frustumCulled = wire.frustumCulled = false;
+// Both sides are lit as seen. Told apart by the normal and not by the order of the vertices: slivers of the
+// far side at silhouettes would be dark specks.
+material.onBeforeCompile = (shader) => {
+  const begin = '#include <normal_fragment_begin>';
+  const face = `#ifndef FLAT_SHADED
+    normal = normalize(vNormal) * (dot(vNormal, vViewPosition) < 0.0 ? -1.0 : 1.0);
+  #endif`;
+  shader.fragmentShader = shader.fragmentShader.replace(begin, `${begin}\n${face}`);
+};
+const wire = new Wires();
+mesh.frustumCulled = false;
 mesh.visible = wire.visible = false;
-material.polygonOffset = true;
 material.polygonOffsetFactor = material.polygonOffsetUnits = 1;
 scene.add(mesh, wire);
 const controls = new OrbitControls(camera, canvas);
@@ -50,6 +58,7 @@ renderer.setAnimationLoop(() => {
   lastFrame = now;
   // Slices of an update go to the GPU as they come, not all at the end.
   const version = mesh.geometry instanceof RefinedGeometry ? mesh.geometry.version : 0;
+  if (wire.visible) wire.follow(mesh.geometry);
   // With damping the camera goes on moving for a while.
   if (controls.update() || isStale || version !== drawnVersion) renderer.render(scene, camera);
   isStale = false;
@@ -140,11 +149,11 @@ function start(): void {
 
 function show(geometry: RefinedGeometry, refinement: Refinement): void {
   if (mesh.geometry !== geometry) {
-    mesh.geometry = wire.geometry = geometry;
+    mesh.geometry = geometry;
     paint();
   }
   mesh.visible = true;
-  wire.visible = element<HTMLInputElement>('wire').checked;
+  showWires();
   shown = refinement;
   redraw();
   facts();
@@ -312,10 +321,13 @@ element('stop').addEventListener('click', () => {
   load?.abort();
   message('Stopped. What has arrived stays.');
 });
-element('wire').addEventListener('change', () => {
+element('wire').addEventListener('change', showWires);
+function showWires(): void {
   wire.visible = element<HTMLInputElement>('wire').checked && mesh.visible;
+  // Behind the lines only: at silhouettes the far side shines through what is set back.
+  material.polygonOffset = wire.visible;
   redraw();
-});
+}
 element('flat').addEventListener('change', () => {
   material.flatShading = element<HTMLInputElement>('flat').checked;
   material.needsUpdate = true;
@@ -378,6 +390,9 @@ const record = {
   },
   get longestSlice() {
     return live?.geometry.longestSlice ?? 0;
+  },
+  get workerSlice() {
+    return live?.refinement.longestSlice ?? 0;
   },
   get shown() {
     return shown;

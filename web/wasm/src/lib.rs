@@ -62,11 +62,24 @@ pub extern "C" fn feed(handle: u32) -> u32 {
     with(handle, Slot::feed)
 }
 
-/// Applies one pass: 0 if bytes are missing or nothing is left, 1 if the mesh changed, otherwise the
-/// number of an error.
+/// Does about `work` units of the next pass: 0 if bytes are missing or nothing is left, 1 if the pass is
+/// finished, 2 if not, otherwise the number of an error.
 #[unsafe(no_mangle)]
-pub extern "C" fn step(handle: u32) -> u32 {
-    with(handle, Slot::step)
+pub extern "C" fn step(handle: u32, work: u32) -> u32 {
+    with(handle, |slot| slot.step(work))
+}
+
+/// Units of work done so far.
+#[unsafe(no_mangle)]
+pub extern "C" fn work_done(handle: u32) -> f64 {
+    with(handle, |slot| slot.work_done() as f64)
+}
+
+/// Goes through about `elements` vertices and triangles to bring positions, normals and expected error up
+/// to date: 1 once they are. Asking for one of them does the rest at one go.
+#[unsafe(no_mangle)]
+pub extern "C" fn prepare(handle: u32, elements: u32) -> u32 {
+    with(handle, |slot| u32::from(slot.prepare(elements as usize)))
 }
 
 /// What the last step changed: see `Slot::report`.

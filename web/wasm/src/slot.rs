@@ -1,7 +1,11 @@
 //! One decoder and what its caller may look at.
 
 use crate::shading::{self, Shading};
-use lwc::{DecodeError, DecodeOptions, Decoder, LevelMesh, PassKind, Update};
+use lwc::{DecodeError, DecodeOptions, Decoder, LevelMesh, PassKind, Step, Update};
+
+/// Runs of rewritten triangles this near to each other are given as one: the triangles between cost less
+/// than the numbers.
+const GAP: u32 = 64;
 
 /// A decoder, single-precision positions, and the answers to the last call.
 pub struct Slot {
@@ -9,6 +13,8 @@ pub struct Slot {
     input: Vec<u8>,
     relative: bool,
     positions: Vec<[f32; 3]>,
+    /// Vertices from this one on have moved since their positions were computed.
+    fresh: usize,
     shading: Option<Shading>,
     report: Vec<u32>,
     info: Vec<f64>,
@@ -22,6 +28,7 @@ impl Slot {
             input: Vec::new(),
             relative,
             positions: Vec::new(),
+            fresh: 0,
             shading: shade.then(Shading::default),
             report: Vec::new(),
             info: Vec::new(),
@@ -43,41 +50,69 @@ impl Slot {
         }
     }
 
-    pub fn step(&mut self) -> u32 {
-        let result = self.decoder.step();
+    pub fn step(&mut self, work: u32) -> u32 {
+        let result = self.decoder.step_within(work);
         self.fill_info();
         match result {
-            Ok(None) => 0,
-            Ok(Some(update)) => {
+            Ok(Step::Waiting) => 0,
+            Ok(Step::Finished(update)) => {
                 self.apply(&update);
                 1
             }
+            Ok(Step::Unfinished) => 2,
             Err(error) => self.fail(&error),
         }
     }
 
+    pub fn work_done(&self) -> u64 {
+        self.decoder.work_done()
+    }
+
     fn apply(&mut self, update: &Update) {
-        let (Some(mesh), Some(info)) = (self.decoder.mesh(), self.decoder.info()) else { return };
-        let origin = if self.relative { info.origin() } else { [0.0; 3] };
-        self.positions.resize(mesh.num_vertices(), [0.0; 3]);
-        for v in update.vertices.start as usize..update.vertices.end as usize {
-            let position = mesh.position(v);
-            self.positions[v] = std::array::from_fn(|axis| (position[axis] - origin[axis]) as f32);
-        }
+        self.fresh = self.fresh.min(update.vertices.start as usize);
         if let Some(shading) = &mut self.shading {
-            let step = info.side() / f64::from(1_u32 << mesh.precision());
-            shading.update(&self.positions, mesh.triangles(), step);
+            shading.restart();
         }
         self.report.clear();
         self.report.extend([kind(update.pass.kind), update.pass.level, update.pass.precision]);
         self.report.extend([self.decoder.passes_done() as u32 - 1]);
         self.report.extend([update.vertices.start, update.vertices.end]);
         self.report.extend([update.new_triangles.start, update.new_triangles.end]);
-        self.report.extend(update.rewritten_triangles.iter().flat_map(|range| [range.start, range.end]));
+        let first_range = self.report.len();
+        for range in &update.rewritten_triangles {
+            match self.report[first_range..].last_mut() {
+                Some(end) if range.start - *end <= GAP => *end = range.end,
+                _ => self.report.extend([range.start, range.end]),
+            }
+        }
+    }
+
+    /// Goes through at most `elements` vertices and triangles whose positions or normals are of an older
+    /// mesh; true if none are left.
+    pub fn prepare(&mut self, elements: usize) -> bool {
+        let (Some(mesh), Some(info)) = (self.decoder.mesh(), self.decoder.info()) else { return true };
+        let origin = if self.relative { info.origin() } else { [0.0; 3] };
+        let count = mesh.num_vertices();
+        let mut left = elements;
+        let end = count.min(self.fresh.saturating_add(left));
+        left -= end - self.fresh;
+        self.positions.truncate(self.fresh);
+        self.positions.reserve_exact(count - self.fresh);
+        self.positions.extend((self.fresh..end).map(|v| {
+            let position = mesh.position(v);
+            std::array::from_fn::<_, 3, _>(|axis| (position[axis] - origin[axis]) as f32)
+        }));
+        self.fresh = end;
+        if end < count {
+            return false;
+        }
+        let step = info.side() / f64::from(1_u32 << mesh.precision());
+        let shading = self.shading.as_mut();
+        shading.is_none_or(|shading| shading.advance(&self.positions, mesh.triangles(), step, left))
     }
 
     /// Kind, level, precision and number of the pass; ranges of changed vertices, of new triangles, and
-    /// of each run of rewritten ones.
+    /// of runs with rewritten ones.
     pub fn report(&self) -> &[u32] {
         &self.report
     }
@@ -103,13 +138,13 @@ impl Slot {
     fn fail(&mut self, error: &DecodeError) -> u32 {
         self.message = error.to_string();
         match error {
-            DecodeError::NotAStream => 2,
-            DecodeError::Unsupported(_) => 3,
-            DecodeError::Checksum { .. } => 4,
-            DecodeError::Malformed { .. } => 5,
-            DecodeError::Limit { .. } => 6,
-            DecodeError::Failed => 7,
-            _ => 8,
+            DecodeError::NotAStream => 3,
+            DecodeError::Unsupported(_) => 4,
+            DecodeError::Checksum { .. } => 5,
+            DecodeError::Malformed { .. } => 6,
+            DecodeError::Limit { .. } => 7,
+            DecodeError::Failed => 8,
+            _ => 9,
         }
     }
 
@@ -117,15 +152,18 @@ impl Slot {
         &self.message
     }
 
-    pub fn positions(&self) -> &[[f32; 3]] {
+    pub fn positions(&mut self) -> &[[f32; 3]] {
+        self.prepare(usize::MAX);
         &self.positions
     }
 
-    pub fn normals(&self) -> &[[f32; 3]] {
+    pub fn normals(&mut self) -> &[[f32; 3]] {
+        self.prepare(usize::MAX);
         self.shading.as_ref().map_or(&[], |shading| shading.normals())
     }
 
-    pub fn expected_error(&self) -> f64 {
+    pub fn expected_error(&mut self) -> f64 {
+        self.prepare(usize::MAX);
         self.shading.as_ref().map_or(f64::NAN, shading::Shading::expected_error)
     }
 

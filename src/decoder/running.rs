@@ -1,0 +1,186 @@
+//! A pass amid its work: it goes on where it was, slice by slice.
+
+use super::frame::{PassInfo, PassKind};
+use super::passes::PassDecoder;
+use crate::bitstream::header::Action;
+use crate::bitstream::range_coder::{RangeDecoder, RangeState};
+use crate::passes::base::Grower;
+use crate::passes::connectivity::PausedWalk;
+use crate::passes::patch::{Patches, StarBuilder};
+use crate::passes::work::{SWEPT_PER_UNIT, Work};
+use crate::passes::{GridMesh, Malformed, coordinates, refine};
+
+/// A pass that has begun, and what was there before it.
+pub(super) struct Running {
+    coder: RangeState,
+    stage: Stage,
+    /// Positions before a refinement, once it writes them.
+    pub(super) old_positions: Option<Vec<[i32; 3]>>,
+    /// Triangles before a split, once it writes them.
+    pub(super) old_triangles: Option<Vec<[u32; 3]>>,
+    pub(super) num_old_vertices: usize,
+}
+
+/// What is done next.
+enum Stage {
+    Begin,
+    /// Triangles of the base mesh.
+    Base(Box<Grower<'static>>),
+    /// Connectivity of a split.
+    Walk(PausedWalk),
+    /// Room for what a split brings: the longest arrays are copied part by part.
+    Triangles(Patches, Vec<[u32; 3]>),
+    Opposite(Patches, Vec<u32>),
+    /// Stars from this patch on.
+    Stars(Patches, StarBuilder, usize),
+    Coordinates(Patches),
+    /// Positions at twice the precision.
+    Double(Vec<[i32; 3]>),
+    /// Bits from this vertex on.
+    Refine(usize),
+    Over,
+}
+
+impl Running {
+    pub(super) fn new(payload: &[u8]) -> Self {
+        Self {
+            coder: RangeDecoder::new(payload).pause(),
+            stage: Stage::Begin,
+            old_positions: None,
+            old_triangles: None,
+            num_old_vertices: 0,
+        }
+    }
+
+    pub(super) fn coder<'a>(&self, payload: &'a [u8]) -> RangeDecoder<'a> {
+        RangeDecoder::resume(payload, &self.coder)
+    }
+
+    pub(super) fn pause(&mut self, coder: &RangeDecoder) {
+        self.coder = coder.pause();
+    }
+
+    /// Positions and triangles from before the pass, wherever they are now.
+    pub(super) fn mesh_before<'a>(&'a self, mesh: &'a GridMesh) -> (&'a [[i32; 3]], &'a [[u32; 3]]) {
+        match (&self.old_positions, &self.old_triangles) {
+            (Some(positions), _) => (positions, &mesh.surface.triangles),
+            (_, Some(triangles)) => (&mesh.positions[..self.num_old_vertices], triangles),
+            _ => (&mesh.positions, &mesh.surface.triangles),
+        }
+    }
+
+    /// Goes on until the pass is over, which gives its patches, or the work is used up. Of a cut payload
+    /// as many coordinates are read as there are.
+    pub(super) fn advance(
+        &mut self,
+        decoder: &mut PassDecoder,
+        pass: &PassInfo,
+        coder: &mut RangeDecoder,
+        work: &mut Work,
+    ) -> Result<Option<Patches>, Malformed> {
+        let mesh = &mut decoder.mesh;
+        let (vertices, faces) = (pass.row.vertices as usize, pass.row.faces as usize);
+        while work.is_left() {
+            self.stage = match std::mem::replace(&mut self.stage, Stage::Over) {
+                Stage::Begin => self.begin(mesh, pass, work),
+                Stage::Base(mut grower) => {
+                    if grower.code_some(coder, work)? {
+                        *mesh = grower.finish()?.mesh;
+                        return Ok(Some(Patches::default()));
+                    }
+                    Stage::Base(grower)
+                }
+                Stage::Walk(mut walk) => {
+                    if walk.code_some(coder, &mut decoder.connectivity, mesh, None, work)? {
+                        let patches = walk.finish()?;
+                        if patches.num_new_faces() != faces {
+                            return Err(Malformed("a level has other faces than announced"));
+                        }
+                        mesh.reserve_vertices(vertices);
+                        work.sweep(mesh.positions.len());
+                        Stage::Triangles(patches, Vec::with_capacity(mesh.surface.triangles.len() + faces))
+                    } else {
+                        Stage::Walk(walk)
+                    }
+                }
+                Stage::Triangles(patches, mut longer) => {
+                    let triangles = &mut mesh.surface.triangles;
+                    if copy_some(triangles, &mut longer, work, |t| t) {
+                        self.num_old_vertices = mesh.positions.len();
+                        self.old_triangles = Some(std::mem::replace(triangles, longer));
+                        let num_corners = mesh.surface.opposite.len();
+                        Stage::Opposite(patches, Vec::with_capacity(num_corners + 3 * faces))
+                    } else {
+                        Stage::Triangles(patches, longer)
+                    }
+                }
+                Stage::Opposite(patches, mut longer) => {
+                    if copy_some(&mesh.surface.opposite, &mut longer, work, |o| o) {
+                        mesh.surface.opposite = longer;
+                        Stage::Stars(patches, StarBuilder::new(self.num_old_vertices), 0)
+                    } else {
+                        Stage::Opposite(patches, longer)
+                    }
+                }
+                Stage::Stars(patches, mut builder, mut next) => {
+                    while next < patches.len() && work.take(patches.edges(next).len()) {
+                        builder.restore(&mut mesh.surface, &patches, next)?;
+                        next += 1;
+                    }
+                    if next < patches.len() {
+                        Stage::Stars(patches, builder, next)
+                    } else {
+                        Stage::Coordinates(patches)
+                    }
+                }
+                Stage::Coordinates(patches) => {
+                    let models = &mut decoder.coordinates;
+                    let bits = pass.precision;
+                    if coordinates::code_some(coder, models, mesh, &patches, bits, None, work)? {
+                        return Ok(Some(patches));
+                    }
+                    Stage::Coordinates(patches)
+                }
+                Stage::Double(mut doubled) => {
+                    if copy_some(&mesh.positions, &mut doubled, work, |p| p.map(|c| 2 * c)) {
+                        self.old_positions = Some(std::mem::replace(&mut mesh.positions, doubled));
+                        Stage::Refine(0)
+                    } else {
+                        Stage::Double(doubled)
+                    }
+                }
+                Stage::Refine(mut next) => {
+                    if refine::code_some(coder, &mut decoder.refine, mesh, &mut next, None, work) {
+                        return Ok(Some(Patches::default()));
+                    }
+                    Stage::Refine(next)
+                }
+                Stage::Over => return Ok(Some(Patches::default())),
+            };
+        }
+        Ok(None)
+    }
+
+    fn begin(&mut self, mesh: &mut GridMesh, pass: &PassInfo, work: &mut Work) -> Stage {
+        match (pass.kind, pass.row.action) {
+            (_, Action::Base { precision }) => {
+                let (vertices, faces) = (pass.vertices as usize, pass.faces as usize);
+                Stage::Base(Box::new(Grower::new(vertices, faces, precision, None)))
+            }
+            (PassKind::Refine, _) => Stage::Double(Vec::with_capacity(mesh.positions.len())),
+            _ => {
+                work.sweep(mesh.surface.triangles.len());
+                Stage::Walk(PausedWalk::new(mesh, pass.row.vertices as usize))
+            }
+        }
+    }
+}
+
+/// Goes on copying `from` behind the end of `to`; true once all is there.
+fn copy_some<T: Copy>(from: &[T], to: &mut Vec<T>, work: &mut Work, change: impl Fn(T) -> T) -> bool {
+    while to.len() < from.len() && work.take(1) {
+        let end = from.len().min(to.len() + SWEPT_PER_UNIT);
+        to.extend(from[to.len()..end].iter().map(|&x| change(x)));
+    }
+    to.len() == from.len()
+}
