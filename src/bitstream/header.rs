@@ -41,22 +41,6 @@ impl Grid {
         (sound && reader.is_empty()).then_some(Self { precision, origin, side })
     }
 
-    /// The same in half the bytes, if that moves no vertex by more than a thousandth of a step or so.
-    #[cfg(any(feature = "encoder", test))]
-    pub(crate) fn narrowed(self) -> Self {
-        /// Largest change of a number, in steps.
-        const CLOSE: f64 = 1.0 / 1024.0;
-        let narrow = |x: f64| f64::from(x as f32);
-        let close = self.side / f64::from((1_u32 << self.precision) - 1) * CLOSE;
-        let numbers = [self.origin[0], self.origin[1], self.origin[2], self.side];
-        let is_close = numbers.iter().all(|&x| (narrow(x) - x).abs() <= close);
-        if is_close {
-            Self { origin: self.origin.map(narrow), side: narrow(self.side), ..self }
-        } else {
-            self
-        }
-    }
-
     #[cfg(any(feature = "encoder", test))]
     pub(crate) fn write(&self) -> Vec<u8> {
         let numbers = [self.origin[0], self.origin[1], self.origin[2], self.side];
@@ -243,12 +227,6 @@ mod tests {
         let fine = Grid { origin: [0.1, 5_500_000.001, 0.0], ..GRID };
         assert_eq!(fine.write().len(), 34);
         assert_eq!(Grid::read(&fine.write()), Some(fine));
-        let decimal = Grid { origin: [0.1, -0.2, 0.0], ..GRID };
-        assert_eq!(decimal.narrowed().origin, [f64::from(0.1_f32), f64::from(-0.2_f32), 0.0]);
-        assert_eq!(decimal.narrowed().write().len(), 18);
-        // There float32 has steps of half a metre, and the grid steps of 0.7 mm.
-        assert_eq!(fine.narrowed(), fine);
-        assert_eq!(Grid { side: 1e-300, ..fine }.narrowed(), Grid { side: 1e-300, ..fine });
         for bad in [
             Grid { precision: 0, ..GRID },
             Grid { precision: 31, ..GRID },

@@ -47,7 +47,7 @@ fn assemble(
 ) -> Vec<u8> {
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
-    chunk::write(&mut bytes, kind::HEADER, &grid.narrowed().write());
+    chunk::write(&mut bytes, kind::HEADER, &grid.write());
     if !hierarchy.records.is_empty() {
         let provenance = Provenance {
             descriptor: options.descriptor as u8,
