@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""What each part of the coder gains: builds lwc with one part after the other switched off.
+
+    benches/ablation.py [--only TEXT] MESH... > table.md
+
+MESH: .obj, .ply or .stl, also as .zst. Every variant is a copy of the sources in which some words are
+replaced (below), built in target/ablation, and checked with --verify: it is a codec of its own. Sizes are
+the mean over the meshes of the change in per cent, with `--optimize size` and with the default; dB the
+mean change of the default's prefixes at 5, 10, 20 and 50 % of its whole file as it is. A part that is
+off makes files larger and prefixes worse by so much.
+"""
+import argparse
+import json
+import math
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+TARGET = ROOT / "target" / "ablation"
+SHARES = [0.05, 0.1, 0.2, 0.5]
+
+GUESS = "src/passes/guess.rs"
+PARTITION = "src/partition.rs"
+# What is switched off: file, words, other words.
+PARTS = {
+    "Prediction: true outer vertices, not those of the coarse mesh": [
+        ("src/passes/surroundings.rs", r"if \(tip as usize\) < vertex \{", "if (tip as usize) < vertex && coarse == NO_CORNER {"),
+    ],
+    "Prediction: guesses moved along the tangent plane": [
+        (GUESS, r"let slopes = slopes\(normal, axes\);", "let slopes = slopes(Lanes::ZERO, axes);"),
+    ],
+    "Prediction: a filter of its own across the surface": [
+        (GUESS, r"weight\.0\[axes\[ACROSS\]\] = across\[i\];", "let _ = across;"),
+        (GUESS, r"\[usize::from\(kind == ACROSS\)\]", "[0]"),
+    ],
+    "Prediction: the affine expert": [
+        (GUESS, r"FIRST_TRUST: Lanes = Lanes\(\[.*\]\)", "FIRST_TRUST: Lanes = Lanes([0.0, 0.5, 0.5, 0.0])"),
+        (GUESS, r"LEAST_TRUST: Lanes = Lanes\(\[.*\]\)", "LEAST_TRUST: Lanes = Lanes([0.0, 0.02, 0.02, 0.0])"),
+    ],
+    "Prediction: median and mode of simple guesses": [
+        (GUESS, r"FIRST_TRUST: Lanes = Lanes\(\[.*\]\)", "FIRST_TRUST: Lanes = Lanes([1.0, 0.0, 0.0, 0.0])"),
+        (GUESS, r"LEAST_TRUST: Lanes = Lanes\(\[.*\]\)", "LEAST_TRUST: Lanes = Lanes([0.02, 0.0, 0.0, 0.0])"),
+    ],
+    "Densities: experts weighed by how they did": [(GUESS, r"TRUST_RATE: f32 = .*;", "TRUST_RATE: f32 = 0.0;")],
+    "Densities: scales learnt on the way": [(GUESS, r"SCALE_RATE: f32 = .*;", "SCALE_RATE: f32 = 0.0;")],
+    "Residuals: the density as an input of the mixers": [
+        ("src/bitstream/residual.rs", r"&\[tables\.stretch_real\([^\]]*\)\]", "&[]"),
+    ],
+    "Residuals: contexts of the neighbourhood beside it": [
+        ("src/passes/coordinates.rs", r"contexts: \[\n[^\]]*\]", "contexts: [0, 0]"),
+        ("src/passes/coordinates.rs", r"sign: 2 \* class \+ usize::from\(guess\.leans_down\)", "sign: 0"),
+    ],
+    "Schedule: precision that follows the error": [
+        ("src/encoder/schedule.rs", r"let base_precision = if num_levels > 0 .*;", "let base_precision = precision;"),
+    ],
+    "Choice: errors against the original surface": [
+        (PARTITION, r"weight \* memory\.least_error\(star\)\.0", "{ let _ = (memory, star); weight }"),
+    ],
+    "Choice: the descriptor": [
+        (PARTITION, r"\(2\.0 \* rank as f64 / vertices\.len\(\) as f64 - 1\.0\)\.exp2\(\)", "{ let _ = rank; 1.0 }"),
+    ],
+    "Choice: creases stay where flat parts can go": [
+        (PARTITION, r"Some\(OUTLIER\)", "Some(OUTLIER).filter(|_| false)"),
+    ],
+    "Choice: holes closed close to the surface": [
+        (PARTITION, r"Some\(thinning\.tolerance\)", "Some(f64::INFINITY)"),
+    ],
+}
+
+
+def build(edits, folder):
+    """Copies the sources, replaces, builds; the program."""
+    folder = folder / "lwc"
+    ignore = shutil.ignore_patterns(".git", "target", "node_modules", "dist", "corpus", "__pycache__")
+    shutil.copytree(ROOT, folder, ignore=ignore)
+    for file, words, others in edits:
+        path = folder / file
+        text, count = re.subn(words, others, path.read_text())
+        if count == 0:
+            raise SystemExit(f"{file} has no `{words}` any more")
+        path.write_text(text)
+    fast = ["--config", "profile.release.lto=false", "--config", "profile.release.codegen-units=16"]
+    command = ["cargo", "build", "--release", "--quiet", "--bin", "lwc", "--target-dir", TARGET, *fast]
+    subprocess.run(command, cwd=folder, check=True)
+    program = folder / "program"
+    shutil.copy(TARGET / "release" / "lwc", program)
+    return program
+
+
+def encode(program, mesh, aim, out):
+    subprocess.run([program, "encode", mesh, "--optimize", aim, "-o", out, "--verify", "--quiet"], check=True)
+    return out.stat().st_size
+
+
+def measure(program, meshes, budgets, folder):
+    """Per mesh: bytes for size, bytes by default, dB at the shares of the budget or of the own bytes."""
+    figures = []
+    for i, mesh in enumerate(meshes):
+        out, early = folder / "m.lwc", folder / "early.lwc"
+        size = encode(program, mesh, "size", out)
+        usual = encode(program, mesh, "balanced", out)
+        stream, quality = out.read_bytes(), []
+        for share in SHARES:
+            early.write_bytes(stream[: int(share * (budgets[i] if budgets else usual))])
+            done = subprocess.run([program, "compare", mesh, early, "--json"], capture_output=True, text=True)
+            quality.append(json.loads(done.stdout)["db"] if done.returncode == 0 else math.nan)
+        figures.append((size, usual, quality))
+    return figures
+
+
+def mean(values):
+    values = [value for value in values if not math.isnan(value)]
+    return sum(values) / len(values) if values else math.nan
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("meshes", nargs="+", type=pathlib.Path)
+    parser.add_argument("--only", default="", help="parts whose name has this in it")
+    options = parser.parse_args()
+    meshes = [mesh.resolve() for mesh in options.meshes]
+    base = None
+    columns = ["off", "size", "default", *(f"{100 * share:.0f} %" for share in SHARES)]
+    print("| " + " | ".join(columns) + " |\n|---" + "|--:" * (len(columns) - 1) + "|")
+    for name, edits in {"": [], **PARTS}.items():
+        if options.only not in name and edits:
+            continue
+        print(name or "as it is", file=sys.stderr)
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            program = build(edits, folder)
+            figures = measure(program, meshes, [row[1] for row in base] if base else None, folder)
+        if base is None:
+            base = figures
+            continue
+        cells = [f"{100 * mean([new[k] / old[k] - 1 for new, old in zip(figures, base)]):+.2f} %" for k in (0, 1)]
+        cells += [f"{mean([new[2][k] - old[2][k] for new, old in zip(figures, base)]):+.1f} dB" for k in range(len(SHARES))]
+        print("| " + " | ".join([name, *cells]) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
