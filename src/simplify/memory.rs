@@ -5,37 +5,43 @@
 use super::Star;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// Squared distance from a set of planes, weighed by area, as a function of the way `d` from the
-/// vertex it belongs to: dᵀ A d + 2 bᵀ d + c.
+/// vertex it belongs to: dᵀ A d + 2 bᵀ d + c. A is symmetric: its columns down to the diagonal.
 #[derive(Clone, Copy, Default)]
 struct Quadric {
-    a: DMat3,
+    a: [f64; 6],
     b: DVec3,
     c: f64,
 }
 
 impl Quadric {
-    const ZERO: Self = Self { a: DMat3::ZERO, b: DVec3::ZERO, c: 0.0 };
+    const ZERO: Self = Self { a: [0.0; 6], b: DVec3::ZERO, c: 0.0 };
 
     /// Of the plane through the vertex itself.
     fn plane(normal: DVec3, weight: f64) -> Self {
-        let n = normal * weight;
-        Self { a: DMat3::from_cols(n * normal.x, n * normal.y, n * normal.z), ..Self::ZERO }
+        let (n, w) = (normal, normal * weight);
+        Self { a: [n.x * w.x, n.x * w.y, n.y * w.y, n.x * w.z, n.y * w.z, n.z * w.z], ..Self::ZERO }
+    }
+
+    /// A d.
+    fn times(&self, d: DVec3) -> DVec3 {
+        let [xx, xy, yy, xz, yz, zz] = self.a;
+        DVec3::new(xx, xy, xz) * d.x + DVec3::new(xy, yy, yz) * d.y + DVec3::new(xz, yz, zz) * d.z
     }
 
     fn at(&self, d: DVec3) -> f64 {
-        (d.dot(self.a * d) + 2.0 * self.b.dot(d) + self.c).max(0.0)
+        (d.dot(self.times(d)) + 2.0 * self.b.dot(d) + self.c).max(0.0)
     }
 
     /// The same function, counted from the place `d` away.
     fn moved(&self, d: DVec3) -> Self {
-        Self { a: self.a, b: self.b + self.a * d, c: self.at(d) }
+        Self { a: self.a, b: self.b + self.times(d), c: self.at(d) }
     }
 
     fn add(&mut self, other: &Self) {
-        self.a += other.a;
+        self.a.iter_mut().zip(other.a).for_each(|(a, other)| *a += other);
         self.b += other.b;
         self.c += other.c;
     }
