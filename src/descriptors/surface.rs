@@ -58,8 +58,10 @@ impl Surface {
         let mut vertices: Vec<Vertex> = (mesh_vertices.iter())
             .map(|&v| Vertex { position: positions[v as usize], normal: DVec3::ZERO })
             .collect();
+        // What follows takes the most memory.
+        drop((positions, surface_vertices));
         let (adjacency, ()) = rayon::join(
-            || Adjacency::new(positions.len(), &triangles),
+            || Adjacency::new(mesh_vertices.len(), &triangles),
             || set_normals(&mut vertices, &triangles, normals),
         );
         Some(Self { triangles, adjacency, vertices, mesh_vertices, unit })
