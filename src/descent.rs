@@ -4,6 +4,7 @@ use crate::descriptors::{self, Descriptor, Window};
 use crate::levels::Level;
 use crate::mesh::Surface;
 use crate::partition::{Geometry, Optimize, Partition, remove_level};
+use crate::simplify::canonical::Anchors;
 use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, ShrinkingSurface};
 
@@ -37,6 +38,7 @@ pub(crate) struct Descent<'a> {
     mean_edge: f64,
     shrinking: ShrinkingSurface,
     memory: ErrorMemory<'a>,
+    anchors: Anchors,
     level: Level,
     depth: u32,
     is_over: bool,
@@ -45,9 +47,10 @@ pub(crate) struct Descent<'a> {
 impl<'a> Descent<'a> {
     pub(crate) fn new(surface: Surface, geometry: Geometry<'a>, mean_edge: f64, settings: Settings) -> Self {
         let memory = ErrorMemory::new(&surface, geometry.positions);
+        let anchors = Anchors::new(&surface);
         let shrinking = ShrinkingSurface::new(surface);
         let level = Level::collect(&shrinking);
-        Self { settings, geometry, mean_edge, shrinking, memory, level, depth: 0, is_over: false }
+        Self { settings, geometry, mean_edge, shrinking, memory, anchors, level, depth: 0, is_over: false }
     }
 
     /// What has not been removed yet.
@@ -57,6 +60,25 @@ impl<'a> Descent<'a> {
 
     pub(crate) fn into_level(self) -> Level {
         self.level
+    }
+
+    /// What stays, the triangles at the anchors first, the anchor as their first edge, so that a decoder
+    /// numbers its ends before all other vertices of its component.
+    pub(crate) fn into_base(self) -> Level {
+        let Self { shrinking, anchors, mut level, .. } = self;
+        let mut place_of_slot: Vec<u32> = vec![u32::MAX; shrinking.surface.triangles.len()];
+        level.faces.iter().zip(0..).for_each(|(&slot, i)| place_of_slot[slot as usize] = i);
+        for (i, corner) in anchors.corners(&shrinking.surface).enumerate() {
+            // The corner faces the anchor, so the triangle is to start after it.
+            let slot = corner / 3;
+            let place = place_of_slot[slot as usize] as usize;
+            level.triangles[place].rotate_left(((corner + 1) % 3) as usize);
+            level.triangles.swap(i, place);
+            level.faces.swap(i, place);
+            place_of_slot[level.faces[place] as usize] = place as u32;
+            place_of_slot[slot as usize] = i as u32;
+        }
+        level
     }
 
     /// Mean squared distance of the original surface from the present level, by its quadrics.
@@ -98,6 +120,7 @@ impl Iterator for Descent<'_> {
             &mut self.shrinking,
             self.geometry,
             &mut self.memory,
+            &self.anchors,
             &self.level.vertices,
             &scores,
         );

@@ -52,7 +52,7 @@ pub(super) fn analyse(
         let fraction = 1.0 - descent.level().vertices.len() as f64 / num_vertices as f64;
         progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });
     }
-    let level = descent.into_level();
+    let level = descent.into_base();
     mean_edges.reverse();
     errors.reverse();
     let base = Surface::from_triangles(level.triangles, level.vertices.len());
