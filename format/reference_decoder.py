@@ -451,7 +451,7 @@ class Residuals:
         low = 1 << e
         for d in range(e):
             middle = low + (1 << (e - 1 - d))
-            upper = above(mixture, middle - 0.5)
+            upper = above(mixture, Single(middle) - 0.5)
             share = (upper - beyond) / (outer - beyond)
             if d < 2:
                 contexts = [(32 * d + e) * 64 + bucket, (32 * d + e) * 3 + kind]
@@ -569,7 +569,7 @@ UNDECIDED, KEPT, IN_PATCH = range(3)
 
 class ConnectivityModels:
     def __init__(self):
-        self.in_patch, self.grow = Mixed(4, 0.0, 30), Mixed(4, 0.0, 30)
+        self.in_patch, self.grow = Mixed(6, 0.0, 30), Mixed(6, 0.0, 30)
         self.ear, self.open = Plain(), Plain()
 
 
@@ -593,6 +593,44 @@ def bucket(x, a):
     return clamp(x - a, 0, 7)
 
 
+NOT, FITS, UNKNOWN = range(3)
+
+
+class Polygon:
+    """Corners from the gate on: vertex, edges, triangles of the patch."""
+
+    def __init__(self, corners, cursor):
+        self.corners, self.cursor = corners, cursor
+
+    def grown(self, passed, tip, edges):
+        n, at = len(self.corners), self.cursor + passed
+        if n in (0, 8):
+            return Polygon([], 0)
+        more = [0] * n
+        more[at] += 1
+        more[(at + 1) % n] += 1
+        corners = [(v, e, k + m) for (v, e, k), m in zip(self.corners, more)]
+        corners.insert(at + 1, (tip, edges, 1))
+        return Polygon(corners, at)
+
+    def fit(self, square):
+        if not self.corners:
+            return UNKNOWN
+        left = [[v, e - k, k] for v, e, k in self.corners]
+        while len(left) > 3:
+            n = len(left)
+            least = min(e for _, e, _ in left)
+            places = [i for i in range(n) if left[i][1] == least]
+            ear = min(places, key=lambda i: square(left[i - 1][0], left[(i + 1) % n][0]))
+            if left[ear][2] != 1:
+                return NOT
+            for beside in (left[ear - 1], left[(ear + 1) % n]):
+                beside[1] += 1
+                beside[2] -= 1
+            del left[ear]
+        return FITS
+
+
 class Connectivity:
     def __init__(self, coder, models, mesh, count):
         self.coder, self.models, self.mesh, self.count = coder, models, mesh, count
@@ -605,9 +643,11 @@ class Connectivity:
             for v in t:
                 self.undecided[v] += 1
         self.find_ears()
-        for f in range(len(mesh.triangle)):
-            if self.state[f] == UNDECIDED:
-                self.decide(3 * f, True)
+        for v in range(len(mesh.cell)):
+            if self.state[mesh.corner_of[v] // 3] == UNDECIDED:
+                corners, _ = mesh.fan(mesh.corner_of[v])
+                start = [c for c in corners if mesh.vertex(next_(c)) == v + 1] + [mesh.corner_of[v]]
+                self.decide(prev(start[0]), True)
                 while self.gates:
                     c = mesh.across[self.gates.popleft()]
                     if c != NONE and self.state[c // 3] == UNDECIDED:
@@ -643,6 +683,12 @@ class Connectivity:
 
     def decide(self, c, seed):
         mesh = self.mesh
+        self.polygon = Polygon([(*self.corner(x), 1) for x in (next_(c), prev(c), c)], 0 if seed else 1)
+        self.fit, self.fits = FITS, {}
+        if not seed:
+            for passed, i in enumerate((next_(c), prev(c))):
+                if self.is_open(i):
+                    self.fits[i] = self.grown(i, passed).fit(self.square)
         if not self.models.in_patch.code(self.coder, *self.face_contexts(c, seed)):
             self.mark(c // 3, KEPT)
             self.gates += [next_(c), prev(c)] + [c] * seed
@@ -657,15 +703,19 @@ class Connectivity:
         while stack:
             i = stack.pop()
             b = mesh.across[i]
-            if (
-                b != NONE
-                and self.state[b // 3] == UNDECIDED
-                and self.models.grow.code(self.coder, *self.growth_contexts(patch, i, b))
-            ):
+            grows = False
+            if self.is_open(i):
+                fit = self.fits[i] if i in self.fits else self.grown(i, 0).fit(self.square)
+                after = self.fits.get(stack[-1], UNKNOWN) if stack else UNKNOWN
+                contexts = self.growth_contexts(patch, i, b, fit, after)
+                grows = self.models.grow.code(self.coder, *contexts)
+            if grows:
+                self.polygon, self.fit, self.fits = self.grown(i, 0), fit, {}
                 self.take(patch, b // 3)
                 stack += [prev(b), next_(b)]
             else:
                 self.add_edge(patch, i)
+                self.polygon.cursor += 1
         for k, edge in enumerate(patch.edges):
             if mesh.across[edge] == NONE and edge not in self.has_ear and self.models.open.code(self.coder, 0):
                 patch.open = k
@@ -676,6 +726,17 @@ class Connectivity:
             self.touched[v] += 1
             is_end = patch.open != CLOSED and k in (patch.open, (patch.open + 1) % len(patch.edges))
             self.gain(v, 1 if is_end else 2)
+
+    def corner(self, c):
+        v = self.mesh.vertex(c)
+        return v, clamp(self.live(v), 0, 200)
+
+    def is_open(self, i):
+        b = self.mesh.across[i]
+        return b != NONE and self.state[b // 3] == UNDECIDED
+
+    def grown(self, i, passed):
+        return self.polygon.grown(passed, *self.corner(self.mesh.across[i]))
 
     def take(self, patch, f):
         self.mark(f, IN_PATCH)
@@ -725,7 +786,11 @@ class Connectivity:
             touches = touches * 3 + min(self.touched[v], 2)
             lives = lives * 8 + bucket(self.live(v), 3)
             coarse = coarse * 8 + bucket(mesh.valence[v], 3)
+        first, second = [self.fits.get(i, UNKNOWN) for i in (next_(c), prev(c))]
+        fits = first * 3 + second
         contexts = [
+            (fits * 4 + self.urgency(t)) * 3 + source,
+            fits * 8 + lives % 8,
             touches * 512 + lives,
             coarse * 3 + source,
             (shape * 8 + fold) * 12 + self.urgency(t) * 3 + source,
@@ -733,7 +798,7 @@ class Connectivity:
         ]
         return contexts, [], max(self.urgency(v) for v in corners) * 2 + (source == 1)
 
-    def growth_contexts(self, patch, i, b):
+    def growth_contexts(self, patch, i, b, fit, after):
         vertex = self.mesh.vertex
         a, e, t, f = vertex(next_(i)), vertex(prev(i)), vertex(i), vertex(b)
         size = min(len(patch.faces), 6) - 1
@@ -743,13 +808,16 @@ class Connectivity:
         near, far = self.cos(t, a, e), self.cos(f, a, e)
         edge, flipped = self.square(a, e), self.square(t, f)
         urgency = self.urgency(f)
+        state = (size * 3 + self.fit) * 3 + fit
         contexts = [
-            (size * 64 + ends) * 4 + urgency,
-            (size * 64 + tips) * 4 + urgency,
-            (size * 8 + steps(near, 4) + steps(far, 4)) * 8 + share(edge, flipped, 8),
+            (state * 3 + after) * 4 + urgency,
+            (state * 3 + after) * 8 + bucket(self.live(f), 3),
+            (state * 64 + ends) * 4 + urgency,
+            (state * 64 + tips) * 4 + urgency,
+            (state * 8 + steps(near, 4) + steps(far, 4)) * 8 + share(edge, flipped, 8),
             (size * 32 + steps(0.5 * (near + far), 32)) * 16 + share(flipped, 3 * edge, 16),
         ]
-        return contexts, [], size * 2 + (urgency > 0)
+        return contexts, [], state * 2 + (urgency > 0)
 
 
 # 7.3 Patches and stars

@@ -1,13 +1,15 @@
 //! Odd and even: which vertices of a level are removed (Algorithm 1 of the paper), given one score
 //! per vertex.
 
+use crate::simplify::canonical::{Anchors, patch_order};
 use crate::simplify::collapse::CollapseTest;
 use crate::simplify::hole::HoleFiller;
 use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, ShrinkingSurface, Star};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
-use std::collections::VecDeque;
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, VecDeque};
 
 /// How a level is split into odd and even vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -101,12 +103,14 @@ const FINE_SHARE: f64 = 0.5;
 
 /// Removes one level of odd vertices. `vertices` are those of the level and `scores` their
 /// descriptor values, in the same order.
+#[expect(clippy::too_many_arguments, reason = "what a level is, and what is kept from one to the next")]
 pub(crate) fn remove_level(
     partition: Partition,
     optimize: Optimize,
     surface: &mut ShrinkingSurface,
     geometry: Geometry,
     memory: &mut ErrorMemory,
+    anchors: &Anchors,
     vertices: &[u32],
     scores: &[f64],
 ) -> LevelRecord {
@@ -118,8 +122,13 @@ pub(crate) fn remove_level(
             remove_in_order(surface, geometry, &order, None, Some(memory))
         }
         Partition::Balanced => {
-            let order = by_cost(surface, memory, vertices, scores, thinning);
-            remove_in_order(surface, geometry, &order, Some(thinning.tolerance), Some(memory))
+            let mut order = by_cost(surface, memory, vertices, scores, thinning);
+            order.retain(|&v| !anchors.contain(v));
+            let order = closely_packed(surface, &order);
+            let mut trial = surface.clone();
+            let chosen = remove_in_order(&mut trial, geometry, &order, Some(thinning.tolerance), None);
+            drop(trial);
+            remove_as_decoded(surface, geometry, &chosen, thinning.tolerance, memory, anchors)
         }
     }
 }
@@ -156,6 +165,37 @@ pub(crate) fn remove_in_order(
         let faces = surface.remove(&star, ears);
         record.push(vertex, &star.ring, faces);
         star.ring.iter().for_each(|&v| tagged.set(v as usize, true));
+    }
+    record.shrink_to_fit();
+    record
+}
+
+/// Removes the vertices that `chosen` took from a copy of the surface, in the reverse of the order in
+/// which a decoder brings them back: the ears of the boundary last.
+fn remove_as_decoded(
+    surface: &mut ShrinkingSurface,
+    geometry: Geometry,
+    chosen: &LevelRecord,
+    tolerance: f64,
+    memory: &mut ErrorMemory,
+    anchors: &Anchors,
+) -> LevelRecord {
+    let mut odd: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
+    chosen.iter().for_each(|removed| odd.set(removed.vertex as usize, true));
+    let order = patch_order(surface, &odd, anchors);
+    let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;
+    let (ears, patches): (Vec<u32>, Vec<u32>) = order.into_iter().rev().partition(is_ear);
+    let mut record = LevelRecord::default();
+    let mut star = Star::default();
+    let mut filler = HoleFiller::default();
+    for corner in patches.into_iter().chain(ears) {
+        surface.read_star_from(corner, &mut star);
+        let filled = filler.fill(surface, &star, geometry.grid, geometry.positions, tolerance);
+        // What was legal in the other order need not be in this one.
+        let Some(ears) = filled else { continue };
+        memory.hand_on(&star);
+        let faces = surface.remove(&star, ears);
+        record.push(star.vertex, &star.ring, faces);
     }
     record.shrink_to_fit();
     record
@@ -198,6 +238,49 @@ fn by_cost(
     free.retain(|&v| valence(v) <= thinning.max_valence);
     free.sort_unstable_by_key(|&v| (valence(v), walk[v as usize]));
     free
+}
+
+/// Those of `order` that go one after the other if each rules out its neighbours, the ones first
+/// whose valence less some of the share of their neighbours that are next to a removed vertex
+/// already is least, ties as in `order`.
+fn closely_packed(surface: &ShrinkingSurface, order: &[u32]) -> Vec<u32> {
+    /// What a ring counts, all of whose vertices are next to others, in units of valence.
+    const WEIGHT: f64 = 0.7;
+    const OUT: u32 = u32::MAX;
+    let mut rank = vec![OUT; surface.surface.corner_of.len()];
+    order.iter().zip(0..).for_each(|(&v, i)| rank[v as usize] = i);
+    let mut touched: BitVec = BitVec::repeat(false, rank.len());
+    let key = |star: &Star, touched: &BitVec| {
+        let near = star.ring.iter().filter(|&&u| touched[u as usize]).count();
+        let key = star.degree() as f64 - WEIGHT * near as f64 / star.degree() as f64;
+        Reverse(((1000.0 * key) as i64, rank[star.vertex as usize]))
+    };
+    let mut star = Star::default();
+    let mut queue = BinaryHeap::new();
+    for &v in order {
+        surface.read_star(v, &mut star);
+        queue.push(key(&star, &touched));
+    }
+    let mut chosen = Vec::new();
+    let (mut second, mut third) = (Star::default(), Star::default());
+    while let Some(first) = queue.pop() {
+        let v = order[first.0.1 as usize];
+        surface.read_star(v, &mut star);
+        if touched[v as usize] || key(&star, &touched) != first {
+            continue;
+        }
+        chosen.push(v);
+        let fresh: Vec<u32> = star.ring.iter().copied().filter(|&u| !touched[u as usize]).collect();
+        fresh.iter().chain([&v]).for_each(|&u| touched.set(u as usize, true));
+        for u in fresh {
+            surface.read_star(u, &mut second);
+            for &w in second.ring.iter().filter(|&&w| rank[w as usize] != OUT && !touched[w as usize]) {
+                surface.read_star(w, &mut third);
+                queue.push(key(&third, &touched));
+            }
+        }
+    }
+    chosen
 }
 
 /// Error of the best collapse of each vertex, weighed by the rank of its score.

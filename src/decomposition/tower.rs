@@ -11,6 +11,7 @@ use crate::mesh::Surface;
 use crate::mesh::repair::{Repaired, repair};
 use crate::partition::{Geometry, Optimize, remove_level};
 use crate::simplify::ShrinkingSurface;
+use crate::simplify::canonical::Anchors;
 use crate::simplify::memory::ErrorMemory;
 use crate::{EncodeError, TriMesh};
 
@@ -70,6 +71,7 @@ impl Tower {
         let geometry = Geometry { grid: &model.cells, positions: &model.positions };
         let num_vertices = surface.corner_of.len();
         let mut memory = ErrorMemory::new(&surface, &model.positions);
+        let anchors = Anchors::new(&surface);
         let mut shrinking = ShrinkingSurface::new(surface);
         let mut window = options.window;
         // Finest first, in the numbering of the surface.
@@ -93,6 +95,7 @@ impl Tower {
                 &mut shrinking,
                 geometry,
                 &mut memory,
+                &anchors,
                 &level.vertices,
                 &scores,
             );

@@ -7,6 +7,7 @@ use crate::descriptors;
 use crate::levels::Level;
 use crate::mesh::Surface;
 use crate::partition::{Geometry, remove_level};
+use crate::simplify::canonical::Anchors;
 use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, ShrinkingSurface};
 
@@ -44,6 +45,7 @@ pub(super) fn analyse(
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
     let mean_edge = descriptors::mean_edge_length(mesh) * model.unit;
     let geometry = Geometry { grid: &model.cells, positions: &model.positions };
+    let anchors = Anchors::new(&surface);
     let mut shrinking = ShrinkingSurface::new(surface);
     let mut window = options.window;
     let mut records = Vec::new();
@@ -65,6 +67,7 @@ pub(super) fn analyse(
             &mut shrinking,
             geometry,
             &mut memory,
+            &anchors,
             &level.vertices,
             &scores,
         );
@@ -83,6 +86,7 @@ pub(super) fn analyse(
     }
     mean_edges.reverse();
     errors.reverse();
+    lead_with_anchors(&mut level, &shrinking, &anchors);
     let base = Surface::from_triangles(level.triangles, level.vertices.len());
     debug_assert!(base.is_ok(), "removal keeps a surface: {base:?}");
     Hierarchy {
@@ -94,6 +98,23 @@ pub(super) fn analyse(
         errors,
         num_vertices,
         num_faces,
+    }
+}
+
+/// Puts the triangles at the anchors first, the anchor as their first edge, so that a decoder numbers
+/// its ends before all other vertices of its component.
+fn lead_with_anchors(level: &mut Level, shrinking: &ShrinkingSurface, anchors: &Anchors) {
+    let mut place_of_slot: Vec<u32> = vec![u32::MAX; shrinking.surface.triangles.len()];
+    level.faces.iter().enumerate().for_each(|(i, &slot)| place_of_slot[slot as usize] = i as u32);
+    for (i, corner) in anchors.corners(&shrinking.surface).enumerate() {
+        // The corner faces the anchor, so the triangle is to start after it.
+        let slot = corner / 3;
+        let place = place_of_slot[slot as usize] as usize;
+        level.triangles[place].rotate_left(((corner + 1) % 3) as usize);
+        level.triangles.swap(i, place);
+        level.faces.swap(i, place);
+        place_of_slot[level.faces[place] as usize] = place as u32;
+        place_of_slot[slot as usize] = i as u32;
     }
 }
 

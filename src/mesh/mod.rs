@@ -1,6 +1,7 @@
 //! Triangle meshes on flat arrays.
 
 mod build;
+pub(crate) mod ears;
 #[cfg(feature = "encoder")]
 pub(crate) mod repair;
 pub(crate) mod surface;

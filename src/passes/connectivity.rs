@@ -2,12 +2,14 @@
 //! mesh are walked from gate to gate and grouped into patches.
 
 use super::patch::{CLOSED, Patches};
+use super::polygon::{FITS, Fit, Polygon};
 use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::bitstream::mixer::{MixedBit, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
 use crate::lanes::Lanes;
 use crate::mesh::Surface;
+use crate::mesh::ears::MAX_VALENCE;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use std::collections::{HashMap, VecDeque};
 
@@ -28,8 +30,8 @@ pub(crate) const NOT_IN_PATCH: u32 = u32::MAX;
 /// Adaptive models, kept from level to level.
 #[derive(Clone)]
 pub(crate) struct ConnectivityModels {
-    in_patch: MixedBit<4>,
-    grow: MixedBit<4>,
+    in_patch: MixedBit<6>,
+    grow: MixedBit<6>,
     ear: PlainBits,
     open: PlainBits,
 }
@@ -37,14 +39,28 @@ pub(crate) struct ConnectivityModels {
 const LIMIT: u32 = 30;
 /// Longest patch that contexts tell apart.
 const MAX_SIZE: usize = 6;
-const GROW_SETS: usize = 2 * MAX_SIZE;
+/// Sizes of a patch, and whether it and the larger one fit the rule.
+const STATES: usize = MAX_SIZE * FITS * FITS;
+const GROW_SETS: usize = 2 * STATES;
 
 impl ConnectivityModels {
     pub(crate) fn new() -> Self {
         Self {
-            in_patch: MixedBit::new([27 * 512, 512 * 3, 64 * 12, 16 * 8 * 16], 8, 0.0, LIMIT),
+            in_patch: MixedBit::new(
+                [FITS * FITS * 12, FITS * FITS * 8, 27 * 512, 512 * 3, 64 * 12, 16 * 8 * 16],
+                8,
+                0.0,
+                LIMIT,
+            ),
             grow: MixedBit::new(
-                [MAX_SIZE * 64 * 4, MAX_SIZE * 64 * 4, MAX_SIZE * 64, MAX_SIZE * 32 * 16],
+                [
+                    STATES * FITS * 4,
+                    STATES * FITS * 8,
+                    STATES * 64 * 4,
+                    STATES * 64 * 4,
+                    STATES * 64,
+                    MAX_SIZE * 32 * 16,
+                ],
                 GROW_SETS,
                 0.0,
                 LIMIT,
@@ -97,6 +113,13 @@ enum Face {
     InPatch = 2,
 }
 
+/// Whether a patch would fit the rule if it grew over the edge that the corner `inside` faces.
+#[derive(Clone, Copy)]
+struct Growth {
+    inside: u32,
+    fit: Fit,
+}
+
 /// Codes the patches of one level: exactly `count` of them when decoding.
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
@@ -126,6 +149,12 @@ struct Walk<'a> {
     gates: VecDeque<u32>,
     /// Edges of the growing patch still to look at.
     frontier: Vec<u32>,
+    polygon: Polygon,
+    /// Whether the polygon fits the rule.
+    fit: Fit,
+    /// What is known of the edges that may be looked at next: those of the face at the gate, until the
+    /// patch grows.
+    growths: [Option<Growth>; 2],
 }
 
 impl<'a> Walk<'a> {
@@ -150,6 +179,9 @@ impl<'a> Walk<'a> {
             around,
             gates: VecDeque::new(),
             frontier: Vec::new(),
+            polygon: Polygon::default(),
+            fit: Fit::Is,
+            growths: [None; 2],
         }
     }
 
@@ -180,11 +212,12 @@ impl<'a> Walk<'a> {
     }
 
     fn code_patches<B: BitCoder>(&mut self, coder: &mut B) -> Result<(), Malformed> {
-        for seed in 0..self.faces.len() as u32 {
-            if self.faces[seed as usize] != Face::Undecided {
+        for vertex in 0..self.surface.corner_of.len() {
+            let corner = self.surface.corner_of[vertex];
+            if self.faces[(corner / 3) as usize] != Face::Undecided {
                 continue;
             }
-            self.decide(coder, 3 * seed, true)?;
+            self.decide(coder, self.seed_at(corner), true)?;
             while let Some(gate) = self.gates.pop_front() {
                 if coder.is_exhausted() || coder.is_guessing() {
                     return Err(Malformed(EXHAUSTED));
@@ -198,11 +231,34 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
+    /// Where the walk of a component starts whose first vertex is at `corner`: at the edge to the
+    /// vertex after it, if that is there.
+    fn seed_at(&self, corner: u32) -> u32 {
+        let second = self.surface.vertex(corner) + 1;
+        let lefts = std::iter::successors(Some(corner), |&c| Some(self.surface.swing_left(c)));
+        let lefts = lefts.take_while(|&c| c != NO_CORNER);
+        let rights = std::iter::successors(Some(corner), |&c| Some(self.surface.swing_right(c)));
+        let rights = rights.take_while(|&c| c != NO_CORNER);
+        let turn = |(i, c): (usize, u32)| (i == 0 || c != corner).then_some(c);
+        let mut around = lefts.enumerate().map_while(turn).chain(rights.enumerate().map_while(turn));
+        prev(around.find(|&c| self.surface.vertex(next(c)) == second).unwrap_or(corner))
+    }
+
     /// Codes whether the face of `corner` is in a patch, and the patch if so. `corner` faces the
     /// gate, unless the face is a seed.
     fn decide<B: BitCoder>(&mut self, coder: &mut B, corner: u32, is_seed: bool) -> Result<(), Malformed> {
         let face = corner / 3;
         let wanted = self.target.map_or(NOT_IN_PATCH, |t| t.patch_of_face[face as usize]);
+        self.polygon = Polygon::of_triangle(
+            [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c)),
+            [next(corner), prev(corner), corner].map(|c| self.live_valence_at(c)),
+            usize::from(!is_seed),
+        );
+        self.fit = Fit::Is;
+        self.growths = [None; 2];
+        if !is_seed {
+            self.growths = [self.growth(next(corner), 0), self.growth(prev(corner), 1)];
+        }
         let (contexts, set) = self.face_contexts(corner, is_seed);
         let tables = Tables::get();
         let is_in_patch =
@@ -231,9 +287,30 @@ impl<'a> Walk<'a> {
                 self.frontier.extend([prev(entered), next(entered)]);
             } else {
                 self.patches.push_edge(self.surface, inside);
+                self.polygon.pass();
             }
         }
         self.finish_patch(coder, wanted)
+    }
+
+    fn live_valence_at(&self, corner: u32) -> u8 {
+        let live = self.around[self.surface.vertex(corner) as usize].live_valence();
+        live.clamp(0, MAX_VALENCE as i32) as u8
+    }
+
+    /// What growing over the edge that `inside` faces would make of the patch, `passed` edges on.
+    /// `None` if it cannot.
+    fn growth(&self, inside: u32, passed: usize) -> Option<Growth> {
+        let beyond = self.surface.across(inside);
+        if beyond == NO_CORNER || self.faces[(beyond / 3) as usize] != Face::Undecided {
+            return None;
+        }
+        let fit = self.grown_polygon(beyond, passed).fit(self.positions);
+        Some(Growth { inside, fit })
+    }
+
+    fn grown_polygon(&self, beyond: u32, passed: usize) -> Polygon {
+        self.polygon.grown(passed, self.surface.vertex(beyond), self.live_valence_at(beyond))
     }
 
     fn mark(&mut self, face: u32, state: Face) {
@@ -254,13 +331,19 @@ impl<'a> Walk<'a> {
 
     /// Codes whether the patch goes on across the edge that `inside` faces.
     fn code_growth<B: BitCoder>(&mut self, coder: &mut B, inside: u32, wanted: u32) -> bool {
+        let known =
+            |inside: u32| self.growths.iter().flatten().find(|growth| growth.inside == inside).copied();
+        let Some(Growth { fit, .. }) = known(inside).or_else(|| self.growth(inside, 0)) else { return false };
+        let after = self.frontier.last().and_then(|&after| known(after));
         let beyond = self.surface.across(inside);
-        if beyond == NO_CORNER || self.faces[(beyond / 3) as usize] != Face::Undecided {
-            return false;
-        }
+        let (contexts, set) = self.growth_contexts(inside, beyond, fit, fit_of(after));
         let grows = self.target.is_some_and(|t| t.patch_of_face[(beyond / 3) as usize] == wanted);
-        let (contexts, set) = self.growth_contexts(inside, beyond);
-        self.models.grow.code(coder, Tables::get(), contexts, &[], set, grows)
+        let grows = self.models.grow.code(coder, Tables::get(), contexts, &[], set, grows);
+        if grows {
+            (self.polygon, self.fit) = (self.grown_polygon(beyond, 0), fit);
+            self.growths = [None; 2];
+        }
+        grows
     }
 
     /// Codes over which edge the hole is open, and passes the polygon's edges on as gates.
@@ -295,7 +378,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn face_contexts(&self, corner: u32, is_seed: bool) -> ([usize; 4], usize) {
+    fn face_contexts(&self, corner: u32, is_seed: bool) -> ([usize; 6], usize) {
         let [a, b, tip] = [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c) as usize);
         let source = if is_seed { 2 } else { self.state_across(corner).saturating_sub(1).min(1) };
         let around = self.state_across(next(corner)) * 4 + self.state_across(prev(corner));
@@ -315,7 +398,11 @@ impl<'a> Walk<'a> {
             let outside = self.positions[self.surface.vertex(beyond) as usize];
             (share(squared_distance(outside, pt), gate * 3.0, 8), steps(cosine(outside, pa, pb), 8))
         };
+        let [first, second] = self.growths.map(fit_of);
+        let prospects = first as usize * FITS + second as usize;
         let contexts = [
+            (prospects * 4 + urgency[2]) * 3 + source,
+            prospects * 8 + live % 8,
             touched * 512 + live,
             coarse * 3 + source,
             (shape * 8 + fold) * 12 + urgency[2] * 3 + source,
@@ -324,7 +411,7 @@ impl<'a> Walk<'a> {
         (contexts, urgency[0].max(urgency[1]).max(urgency[2]) * 2 + usize::from(source == 1))
     }
 
-    fn growth_contexts(&self, inside: u32, beyond: u32) -> ([usize; 4], usize) {
+    fn growth_contexts(&self, inside: u32, beyond: u32, fit: Fit, after: Fit) -> ([usize; 6], usize) {
         let (_, faces) = self.patches.unfinished();
         let size = faces.len().min(MAX_SIZE) - 1;
         let [a, b, tip, far] =
@@ -332,19 +419,28 @@ impl<'a> Walk<'a> {
         let [va, vb, vt, vf] = [a, b, tip, far].map(|v| self.around[v].live_valence());
         let pair = |x: i32, y: i32| bucket(x, 2) * 8 + bucket(y, 2);
         let urgency = self.around[far].urgency();
+        let state = (size * FITS + self.fit as usize) * FITS + fit as usize;
+        let outlook = state * FITS + after as usize;
 
         let [pa, pb, pt, pf] = [a, b, tip, far].map(|v| self.positions[v]);
-        let edge = squared_distance(pa, pb);
+        let length = squared_distance(pa, pb);
         let flipped = squared_distance(pt, pf);
         let (near_cosine, far_cosine) = (cosine(pt, pa, pb), cosine(pf, pa, pb));
         let contexts = [
-            (size * 64 + pair(va.min(vb), va.max(vb))) * 4 + urgency,
-            (size * 64 + pair(vt, vf)) * 4 + urgency,
-            (size * 8 + steps(near_cosine, 4) + steps(far_cosine, 4)) * 8 + share(edge, flipped, 8),
-            (size * 32 + steps(0.5 * (near_cosine + far_cosine), 32)) * 16 + share(flipped, 3.0 * edge, 16),
+            outlook * 4 + urgency,
+            outlook * 8 + bucket(vf, 3),
+            (state * 64 + pair(va.min(vb), va.max(vb))) * 4 + urgency,
+            (state * 64 + pair(vt, vf)) * 4 + urgency,
+            (state * 8 + steps(near_cosine, 4) + steps(far_cosine, 4)) * 8 + share(length, flipped, 8),
+            (size * 32 + steps(0.5 * (near_cosine + far_cosine), 32)) * 16 + share(flipped, 3.0 * length, 16),
         ];
-        (contexts, size * 2 + usize::from(urgency > 0))
+        (contexts, state * 2 + usize::from(urgency > 0))
     }
+}
+
+/// [`Fit::Unknown`] if the patch cannot grow there.
+fn fit_of(growth: Option<Growth>) -> Fit {
+    growth.map_or(Fit::Unknown, |growth| growth.fit)
 }
 
 /// `value − first` clamped to 0..8.

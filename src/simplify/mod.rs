@@ -1,5 +1,6 @@
 //! Removal of odd vertices from a surface, and the record from which an encoder brings them back.
 
+pub(crate) mod canonical;
 pub(crate) mod collapse;
 mod deviation;
 pub(crate) mod geometry;

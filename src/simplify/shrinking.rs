@@ -27,6 +27,7 @@ impl Star {
 }
 
 /// Surface with slots that become free.
+#[derive(Clone)]
 pub(crate) struct ShrinkingSurface {
     pub(crate) surface: Surface,
     num_vertices: usize,
@@ -66,8 +67,12 @@ impl ShrinkingSurface {
     }
 
     pub(crate) fn read_star(&self, vertex: u32, star: &mut Star) {
-        star.vertex = vertex;
-        let corner = self.surface.corner_of[vertex as usize];
+        self.read_star_from(self.surface.corner_of[vertex as usize], star);
+    }
+
+    /// The star of the vertex at `corner`; a closed one starts there.
+    pub(crate) fn read_star_from(&self, corner: u32, star: &mut Star) {
+        star.vertex = self.surface.vertex(corner);
         let surface = &self.surface;
         let closed = surface.fan(corner, &mut star.corners);
         star.ring.clear();

@@ -1,24 +1,21 @@
-//! Triangulation of a hole so that valences drift apart: the corner of lowest valence is cut off
-//! first, which makes some ring vertices high and leaves the others low, to be the next to go.
+//! Triangulation of a hole by the rule of [`ears`](crate::mesh::ears), which makes connectivity cheap.
 //!
-//! Departs from the half-edge collapse of section 6, which allows any valid triangulation. Cheaper
-//! to code: a decoder that knows the rule finds most patches plausible or not.
+//! Departs from the half-edge collapse of section 6, which allows any valid triangulation.
 
 use super::collapse::is_tetrahedral;
 use super::geometry::{area_vector, is_same_side};
 use super::shrinking::{ShrinkingSurface, Star};
+use crate::mesh::ears::{Bytes, Ear, Hole, MAX_CORNERS, MAX_VALENCE};
 
 /// Scratch space of the rule.
 #[derive(Default)]
 pub(crate) struct EarClipper {
-    left: Vec<usize>,
-    valence: Vec<i64>,
     ears: Vec<usize>,
 }
 
 impl EarClipper {
-    /// The ears to cut, or `None` if no order keeps every triangle on its side and every new edge
-    /// new. `grid` decides the sides.
+    /// The ears to cut, or `None` if the hole has too many corners or the rule does not keep every
+    /// triangle on its side and every new edge new. `grid` decides the sides.
     pub(crate) fn clip(
         &mut self,
         surface: &ShrinkingSurface,
@@ -26,60 +23,54 @@ impl EarClipper {
         grid: &[[i32; 3]],
     ) -> Option<&[usize]> {
         let degree = star.degree();
-        if degree < 3 || star.is_closed() && degree == 3 && is_tetrahedral(surface, star) {
+        let has_edge = |i: usize, j: usize| surface.has_edge(star.ring[i], star.ring[j]);
+        if !(3..=MAX_CORNERS).contains(&degree)
+            || star.is_closed() && degree == 3 && is_tetrahedral(surface, star)
+            || !star.is_closed() && has_edge(0, degree - 1)
+        {
             return None;
         }
         let cell = |i: usize| grid[star.ring[i] as usize];
-        let side = self.side(star, grid);
-        self.left.clear();
-        self.left.extend(0..degree);
-        self.valence.clear();
-        self.valence.extend(star.ring.iter().map(|&v| i64::from(surface.surface.valence[v as usize])));
+        let side = side(star, grid);
+        let allowed = |ear: Ear, count: usize| {
+            let (p, c, n) = (ear.before, ear.corner, ear.after);
+            let keeps_side = side == [0; 3] || is_same_side(side, area_vector(cell(p), cell(c), cell(n)));
+            // The edge that closes an open star has been tested.
+            let closes = !star.is_closed() && (p, n) == (degree - 1, 0);
+            keeps_side && (count == 3 || closes || !has_edge(p, n))
+        };
+        let mut hole = Hole::new(valences(surface, star), degree);
         self.ears.clear();
-        while self.left.len() > 2 {
-            let count = self.left.len();
-            let corner = |k: usize| {
-                let (p, n) = (self.left[(k + count - 1) % count], self.left[(k + 1) % count]);
-                (p, self.left[k], n)
-            };
-            let allowed = |k: usize| {
-                let (p, c, n) = corner(k);
-                let area = area_vector(cell(p), cell(c), cell(n));
-                let keeps_side = side == [0; 3] || is_same_side(side, area);
-                let closes = !star.is_closed() && (p, n) == (degree - 1, 0);
-                keeps_side && (count == 3 || closes || !surface.has_edge(star.ring[p], star.ring[n]))
-            };
-            // The new boundary edge of an open star must be new as well.
-            let ear = (0..count).filter(|&k| allowed(k)).min_by_key(|&k| {
-                let (p, c, n) = corner(k);
-                (self.valence[c], -(self.valence[p] + self.valence[n]), c)
-            })?;
-            let (p, c, n) = corner(ear);
-            self.valence[c] -= 1;
-            if count > 3 {
-                self.valence[p] += 1;
-                self.valence[n] += 1;
-            }
-            self.ears.push(c);
-            self.left.remove(ear);
-        }
-        if !star.is_closed() && surface.has_edge(star.ring[0], star.ring[degree - 1]) {
-            return None;
+        while hole.len() > 2 {
+            let count = hole.len();
+            let ear = hole.next_ear(cell, |ear| allowed(ear, count))?;
+            self.ears.push(ear.corner);
+            hole.cut(ear);
         }
         Some(&self.ears)
     }
+}
 
-    /// Sum of the area vectors of the star's faces; zero where all are degenerate.
-    fn side(&self, star: &Star, grid: &[[i32; 3]]) -> [i64; 3] {
-        let at = |v: u32| grid[v as usize];
-        let mut sum = [0_i64; 3];
-        for i in 0..star.corners.len() {
-            let (a, b) = (star.ring[i], star.ring[(i + 1) % star.degree()]);
-            let area = area_vector(at(star.vertex), at(a), at(b));
-            for (s, x) in sum.iter_mut().zip(area) {
-                *s = s.saturating_add(x);
-            }
-        }
-        sum
+/// Valences of the corners of the hole. The ends of an open star get the edge that closes it.
+fn valences(surface: &ShrinkingSurface, star: &Star) -> Bytes {
+    let mut valences = Bytes::default();
+    for (i, &v) in star.ring.iter().enumerate() {
+        let is_end = !star.is_closed() && (i == 0 || i + 1 == star.degree());
+        valences.add(i, surface.surface.valence[v as usize].min(MAX_VALENCE) as u8 + u8::from(is_end));
     }
+    valences
+}
+
+/// Sum of the area vectors of the star's faces; zero where all are degenerate.
+fn side(star: &Star, grid: &[[i32; 3]]) -> [i64; 3] {
+    let at = |v: u32| grid[v as usize];
+    let mut sum = [0_i64; 3];
+    for i in 0..star.corners.len() {
+        let (a, b) = (star.ring[i], star.ring[(i + 1) % star.degree()]);
+        let area = area_vector(at(star.vertex), at(a), at(b));
+        for (s, x) in sum.iter_mut().zip(area) {
+            *s = s.saturating_add(x);
+        }
+    }
+    sum
 }
