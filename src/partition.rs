@@ -9,7 +9,7 @@ use crate::simplify::{LevelRecord, ShrinkingSurface, Star};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, VecDeque};
+use std::collections::BinaryHeap;
 
 /// How a level is split into odd and even vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -147,46 +147,37 @@ pub(crate) fn remove_level(
     match partition {
         Partition::Algorithm1 => {
             let order = by_score(vertices, scores);
-            remove_in_order(surface, geometry, &order, None, Some(memory))
+            remove_in_order(surface, geometry, &order, Some(memory))
         }
         Partition::Balanced => {
-            let mut order = by_cost(surface, memory, vertices, scores, thinning);
-            order.retain(|&v| !anchors.contain(v));
-            let order = closely_packed(surface, &order);
-            let mut trial = surface.clone();
-            let chosen = remove_in_order(&mut trial, geometry, &order, Some(thinning.tolerance), None);
-            drop(trial);
+            let mut free = candidates(surface, memory, vertices, scores, thinning);
+            free.retain(|&v| !anchors.contain(v));
+            let chosen = closely_packed(surface, &free);
             remove_as_decoded(surface, geometry, &chosen, thinning.tolerance, memory, anchors)
         }
     }
 }
 
-/// Removes the vertices of `order` one after the other, unless a neighbour went before or no removal
-/// is legal: as Algorithm 1 does without a `tolerance`, else with the holes of [`HoleFiller`].
-/// `memory` is told.
+/// Removes the vertices of `order` one after the other, unless a neighbour went before or no collapse is
+/// legal, as Algorithm 1 does. `memory` is told.
 pub(crate) fn remove_in_order(
     surface: &mut ShrinkingSurface,
     geometry: Geometry,
     order: &[u32],
-    tolerance: Option<f64>,
     mut memory: Option<&mut ErrorMemory>,
 ) -> LevelRecord {
     let mut tagged: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     let mut record = LevelRecord::default();
     let mut star = Star::default();
     let mut collapse = CollapseTest::default();
-    let mut filler = HoleFiller::default();
-    let Geometry { grid, positions } = geometry;
     for &vertex in order {
         if tagged[vertex as usize] {
             continue;
         }
         surface.read_star(vertex, &mut star);
-        let ears = match tolerance {
-            None => collapse.shortest_legal(surface, &star, grid, positions),
-            Some(tolerance) => filler.fill(surface, &star, grid, positions, tolerance),
+        let Some(ears) = collapse.shortest_legal(surface, &star, geometry.grid, geometry.positions) else {
+            continue;
         };
-        let Some(ears) = ears else { continue };
         if let Some(memory) = &mut memory {
             memory.hand_on(&star);
         }
@@ -198,18 +189,19 @@ pub(crate) fn remove_in_order(
     record
 }
 
-/// Removes the vertices that `chosen` took from a copy of the surface, in the reverse of the order in
-/// which a decoder brings them back: the ears of the boundary last.
+/// Removes the vertices of `chosen`, none next to another, in the reverse of the order in which a decoder
+/// brings them back: the ears of the boundary last. Those that cannot go stay, which costs some bits where
+/// the order then differs.
 fn remove_as_decoded(
     surface: &mut ShrinkingSurface,
     geometry: Geometry,
-    chosen: &LevelRecord,
+    chosen: &[u32],
     tolerance: f64,
     memory: &mut ErrorMemory,
     anchors: &Anchors,
 ) -> LevelRecord {
     let mut odd: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
-    chosen.iter().for_each(|removed| odd.set(removed.vertex as usize, true));
+    chosen.iter().for_each(|&v| odd.set(v as usize, true));
     let order = patch_order(surface, &odd, anchors);
     let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;
     let (ears, patches): (Vec<u32>, Vec<u32>) = order.into_iter().rev().partition(is_ear);
@@ -219,7 +211,6 @@ fn remove_as_decoded(
     for corner in patches.into_iter().chain(ears) {
         surface.read_star_from(corner, &mut star);
         let filled = filler.fill(surface, &star, geometry.grid, geometry.positions, tolerance);
-        // What was legal in the other order need not be in this one.
         let Some(ears) = filled else { continue };
         memory.hand_on(&star);
         let faces = surface.remove(&star, ears);
@@ -245,10 +236,9 @@ fn places_by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
     order
 }
 
-/// Low valence first, ties along a walk over the surface; the most salient vertices and those of
-/// high valence are left out. Saliency is the error of the best collapse, between half and twice as
-/// much by the rank of the descriptor.
-fn by_cost(
+/// The vertices that may go: all but the most salient ones and those of high valence. Saliency is the error
+/// of the best collapse, between half and twice as much by the rank of the descriptor.
+fn candidates(
     surface: &ShrinkingSurface,
     memory: &ErrorMemory,
     vertices: &[u32],
@@ -261,52 +251,50 @@ fn by_cost(
         free = by_score(vertices, &saliency);
         free.truncate(thinning.num_free(&saliency));
     }
-    let walk = breadth_first(surface, vertices);
     let valence = |v: u32| surface.surface.valence[v as usize];
     free.retain(|&v| valence(v) <= thinning.max_valence);
-    free.sort_unstable_by_key(|&v| (valence(v), walk[v as usize]));
     free
 }
 
-/// Those of `order` that go one after the other if each rules out its neighbours, the ones first
-/// whose valence less some of the share of their neighbours that are next to a removed vertex
-/// already is least, ties as in `order`.
-fn closely_packed(surface: &ShrinkingSurface, order: &[u32]) -> Vec<u32> {
+/// Those of `free` that go one after the other if each rules out its neighbours, the ones first whose
+/// valence less some of the share of their neighbours that are next to a removed vertex already is least,
+/// ties by index.
+fn closely_packed(surface: &ShrinkingSurface, free: &[u32]) -> Vec<u32> {
     /// What a ring counts, all of whose vertices are next to others, in units of valence.
     const WEIGHT: f64 = 0.7;
-    const OUT: u32 = u32::MAX;
-    let mut rank = vec![OUT; surface.surface.corner_of.len()];
-    order.iter().zip(0..).for_each(|(&v, i)| rank[v as usize] = i);
-    let mut touched: BitVec = BitVec::repeat(false, rank.len());
-    let key = |star: &Star, touched: &BitVec| {
-        let near = star.ring.iter().filter(|&&u| touched[u as usize]).count();
-        let key = star.degree() as f64 - WEIGHT * near as f64 / star.degree() as f64;
-        Reverse(((1000.0 * key) as i64, rank[star.vertex as usize]))
+    let num_slots = surface.surface.corner_of.len();
+    let mut may_go: BitVec = BitVec::repeat(false, num_slots);
+    free.iter().for_each(|&v| may_go.set(v as usize, true));
+    let mut touched: BitVec = BitVec::repeat(false, num_slots);
+    let mut num_touched = vec![0_u8; num_slots];
+    let key = |v: u32, num_touched: &[u8]| {
+        let degree = f64::from(surface.surface.valence[v as usize]);
+        let key = degree - WEIGHT * f64::from(num_touched[v as usize]) / degree;
+        Reverse(((1000.0 * key) as i64, v))
     };
-    let mut star = Star::default();
-    let mut queue = BinaryHeap::new();
-    for &v in order {
-        surface.read_star(v, &mut star);
-        queue.push(key(&star, &touched));
-    }
+    let mut queue: BinaryHeap<_> = free.iter().map(|&v| key(v, &num_touched)).collect();
     let mut chosen = Vec::new();
-    let (mut second, mut third) = (Star::default(), Star::default());
+    let (mut star, mut second) = (Star::default(), Star::default());
+    let (mut fresh, mut nearer) = (Vec::new(), Vec::new());
     while let Some(first) = queue.pop() {
-        let v = order[first.0.1 as usize];
-        surface.read_star(v, &mut star);
-        if touched[v as usize] || key(&star, &touched) != first {
+        let v = first.0.1;
+        if touched[v as usize] || key(v, &num_touched) != first {
             continue;
         }
         chosen.push(v);
-        let fresh: Vec<u32> = star.ring.iter().copied().filter(|&u| !touched[u as usize]).collect();
+        surface.read_star(v, &mut star);
+        fresh.extend(star.ring.iter().copied().filter(|&u| !touched[u as usize]));
         fresh.iter().chain([&v]).for_each(|&u| touched.set(u as usize, true));
-        for u in fresh {
+        for u in fresh.drain(..) {
             surface.read_star(u, &mut second);
-            for &w in second.ring.iter().filter(|&&w| rank[w as usize] != OUT && !touched[w as usize]) {
-                surface.read_star(w, &mut third);
-                queue.push(key(&third, &touched));
+            for &w in second.ring.iter().filter(|&&w| may_go[w as usize] && !touched[w as usize]) {
+                num_touched[w as usize] = num_touched[w as usize].saturating_add(1);
+                nearer.push(w);
             }
         }
+        nearer.sort_unstable();
+        nearer.dedup();
+        queue.extend(nearer.drain(..).map(|w| key(w, &num_touched)));
     }
     chosen
 }
@@ -324,29 +312,6 @@ fn saliency(surface: &ShrinkingSurface, memory: &ErrorMemory, vertices: &[u32], 
     };
     let pairs = vertices.par_iter().zip(weight).with_min_len(MIN_PARALLEL);
     pairs.map_init(Star::default, weighed).collect()
-}
-
-/// Position of each vertex in a breadth-first walk.
-fn breadth_first(surface: &ShrinkingSurface, vertices: &[u32]) -> Vec<u32> {
-    let mut place = vec![u32::MAX; surface.surface.corner_of.len()];
-    let mut queue = VecDeque::new();
-    let mut star = Star::default();
-    let mut count = 0;
-    let mut visit = |v: u32, queue: &mut VecDeque<u32>| {
-        if place[v as usize] == u32::MAX {
-            place[v as usize] = count;
-            count += 1;
-            queue.push_back(v);
-        }
-    };
-    for &seed in vertices {
-        visit(seed, &mut queue);
-        while let Some(v) = queue.pop_front() {
-            surface.read_star(v, &mut star);
-            star.ring.iter().for_each(|&u| visit(u, &mut queue));
-        }
-    }
-    place
 }
 
 #[cfg(test)]

@@ -193,7 +193,7 @@ impl Experiment {
             let order = by_score(&level.vertices, &scores);
             let partition_seconds = start.elapsed().as_secs_f64();
             let start = Instant::now();
-            let record = remove_in_order(&mut shrinking, geometry, &order, None, None);
+            let record = remove_in_order(&mut shrinking, geometry, &order, None);
             let removal_seconds = start.elapsed().as_secs_f64();
             if record.len() == 0 {
                 break;

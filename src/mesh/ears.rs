@@ -5,8 +5,6 @@
 //!
 //! It drives valences apart: low ones are the next to go, and most groups of faces can be ruled out.
 
-use crate::lanes::Lanes;
-
 /// Most corners of a hole.
 pub(crate) const MAX_CORNERS: usize = 8;
 /// Largest valence that the rule tells apart.
@@ -66,6 +64,13 @@ impl Bytes {
     }
 }
 
+/// How long a cut is, squared.
+#[inline(always)]
+pub(crate) fn squared_distance(p: [i32; 3], q: [i32; 3]) -> f32 {
+    let [x, y, z] = std::array::from_fn(|i| q[i].wrapping_sub(p[i]) as f32);
+    (x * x + y * y) + z * z
+}
+
 /// A hole that is closed ear by ear.
 pub(crate) struct Hole {
     /// Corners left, counter-clockwise: what they are called, and their valence less any constant.
@@ -103,10 +108,7 @@ impl Hole {
         position: impl Fn(usize) -> [i32; 3],
         allowed: impl Fn(Ear) -> bool,
     ) -> Option<Ear> {
-        let cut = |ear: Ear| {
-            let cut = Lanes::between(position(ear.before), position(ear.after));
-            cut.dot3(cut)
-        };
+        let cut = |ear: Ear| squared_distance(position(ear.before), position(ear.after));
         let mut least = u8::MAX;
         let mut best: Option<Ear> = None;
         // Length of the best one's cut; needed only if there are several of its valence.

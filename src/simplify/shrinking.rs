@@ -27,7 +27,6 @@ impl Star {
 }
 
 /// Surface with slots that become free.
-#[derive(Clone)]
 pub(crate) struct ShrinkingSurface {
     pub(crate) surface: Surface,
     num_vertices: usize,
