@@ -10,7 +10,7 @@ use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
 use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
 use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format};
-use crate::mesh::Surface;
+use crate::mesh::{Attribute, Surface};
 use crate::{
     DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Step,
     StreamInfo, TriMesh, Update, encode,
@@ -207,17 +207,45 @@ impl Case {
     }
 }
 
-/// Any bytes as a file of `format` are a mesh or an error; a mesh survives being written.
+/// Any bytes as a file of `format` are a mesh with valid attributes or an error; both survive being written.
 pub fn read_mesh(data: &[u8], format: Format) {
     let Ok(file) = io::read_bytes(data, format) else { return };
+    for attribute in &file.attributes.list {
+        attribute.validate(&file.mesh).expect("readers give valid attributes");
+    }
     if format == Format::Stl {
         return;
     }
     let mut bytes = Vec::new();
-    if io::write_to(&mut bytes, &file.mesh, format).is_ok() {
-        let again = io::read_bytes(&bytes, format).map(|f| f.mesh);
-        assert!(again.is_ok_and(|mesh| mesh == file.mesh), "a written mesh reads differently");
+    if io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, format).is_ok() {
+        let again = io::read_bytes(&bytes, format).expect("a written mesh is readable");
+        assert!(again.mesh == file.mesh, "a written mesh reads differently");
+        for attribute in &file.attributes.list {
+            let has_values =
+                (0..attribute.domain.num_elements(&file.mesh)).any(|k| attribute.row(k).is_some());
+            let is_same = |other: &&Attribute| {
+                other.name == attribute.name && have_equal_values(&file.mesh, attribute, other)
+            };
+            let found = again.attributes.list.iter().any(|other| is_same(&other));
+            assert!(found || !has_values, "{} reads differently", attribute.name);
+        }
     }
+}
+
+/// Whether two attributes look the same from every corner, but for values that one of them lacks.
+fn have_equal_values(mesh: &TriMesh, a: &Attribute, b: &Attribute) -> bool {
+    let n = a.num_components;
+    let value = |attribute: &Attribute, triangle: usize, corner: usize| {
+        let row = attribute.row_at_corner(mesh, triangle, corner)?;
+        let bits: Vec<_> = (0..n).map(|k| attribute.values.bits(row * n + k)).collect();
+        Some((bits, attribute.values.names().map(|names| names[row].clone())))
+    };
+    n == b.num_components
+        && a.values.scalar_type() == b.values.scalar_type()
+        && (0..3 * mesh.num_triangles()).all(|k| {
+            let (a, b) = (value(a, k / 3, k % 3), value(b, k / 3, k % 3));
+            a.is_none() || b.is_none() || a == b
+        })
 }
 
 /// Panics unless the mesh is what [`LevelMesh`] promises.

@@ -1,7 +1,7 @@
 //! `lwc encode`: a mesh file becomes a stream.
 
 use super::args::Encode;
-use super::input::read_mesh;
+use super::input::{not_kept, read_mesh};
 use super::output::{Destination, print_json, with_ending, without_mesh_ending};
 use super::quantity::counted;
 use super::ui::Ui;
@@ -178,7 +178,7 @@ impl Report<'_> {
             "polygons_triangulated": read.polygons_triangulated,
             "faces_skipped": read.faces_skipped,
             "corners_welded": read.corners_welded,
-            "ignored": read.ignored,
+            "ignored": not_kept(self.file),
             "degenerate_faces": repair.degenerate_faces,
             "isolated_vertices": repair.isolated_vertices,
             "repeated_vertices": repair.repeated_vertices,

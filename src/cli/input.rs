@@ -4,7 +4,7 @@ use super::exit::Failure;
 use super::quantity::counted;
 use super::ui::{Bar, Ui};
 use anyhow::Context;
-use lwc::io::{MeshFile, ReadReport};
+use lwc::io::MeshFile;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
 use std::fs::File;
 use std::io::{self, IsTerminal, Read};
@@ -17,11 +17,19 @@ pub fn read_mesh(path: &Path, ui: &Ui) -> anyhow::Result<MeshFile> {
         let _spinner = ui.spinner("reading");
         lwc::io::read(path).with_context(|| name.clone())?
     };
-    warn_about(&name, &file.report, ui);
+    warn_about(&name, &file, ui);
     Ok(file)
 }
 
-fn warn_about(name: &str, report: &ReadReport, ui: &Ui) {
+/// Names of what is in a file and in no stream: what its reader left out, and all attributes.
+pub fn not_kept(file: &MeshFile) -> Vec<String> {
+    let attributes = file.attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
+    let libraries = file.attributes.material_libraries.first().map(|_| "mtllib".to_owned());
+    file.report.ignored.iter().cloned().chain(attributes).chain(libraries).collect()
+}
+
+fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
+    let report = &file.report;
     if report.polygons_triangulated > 0 {
         let polygons = counted(report.polygons_triangulated, "polygon", "polygons");
         ui.warn(name, &format!("{polygons} cut into triangles"));
@@ -30,8 +38,9 @@ fn warn_about(name: &str, report: &ReadReport, ui: &Ui) {
         let faces = counted(report.faces_skipped, "face", "faces");
         ui.warn(name, &format!("{faces} of fewer than three corners left out"));
     }
-    if !report.ignored.is_empty() {
-        ui.warn(name, &format!("not kept: {}", report.ignored.join(", ")));
+    let not_kept = not_kept(file);
+    if !not_kept.is_empty() {
+        ui.warn(name, &format!("not kept: {}", not_kept.join(", ")));
     }
     if report.corners_welded > 0 {
         ui.detail(name, &format!("{} joined", counted(report.corners_welded, "corner", "corners")));

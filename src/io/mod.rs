@@ -1,7 +1,7 @@
 //! Mesh files: OBJ, PLY and STL, each also compressed with zstd (`.zst`).
 //!
-//! The file formats stay at the edge of the crate: a file becomes a [`TriMesh`] and a [`ReadReport`], a
-//! [`TriMesh`] becomes a file, and nothing else knows that files exist.
+//! The file formats stay at the edge of the crate: a file becomes a [`TriMesh`], its [`Attributes`] and a
+//! [`ReadReport`], these become a file, and nothing else knows that files exist.
 //!
 //! Input is not trusted. No input makes a reader panic, and counts declared in a file never decide how much
 //! is allocated: memory grows as the data that fills it is found, to a small multiple of the file's size.
@@ -24,7 +24,7 @@ mod text;
 pub use atomic::write_atomic;
 pub use error::{Place, ReadError, WriteError};
 
-use crate::mesh::TriMesh;
+use crate::mesh::{Attribute, Attributes, Domain, Semantic, TriMesh, Values};
 use std::{
     fs::File,
     io::{self, Read, Write},
@@ -82,7 +82,9 @@ fn format_and_compression(path: &Path) -> Option<(Format, bool)> {
 pub struct MeshFile {
     /// Vertices in the order of the file, unused ones included; triangles in the order of the file.
     pub mesh: TriMesh,
-    /// What the mesh does not show.
+    /// Normals, texture coordinates, colours, materials and whatever else the file has; valid for the mesh.
+    pub attributes: Attributes,
+    /// What was changed or left out.
     pub report: ReadReport,
 }
 
@@ -96,8 +98,8 @@ pub struct ReadReport {
     pub faces_skipped: usize,
     /// STL only: corners that were joined with an earlier corner at exactly the same place.
     pub corners_welded: usize,
-    /// Names of what was in the file and is not in the mesh, each once, in order of appearance:
-    /// OBJ statements (`vt`), PLY properties (`vertex.red`) and elements (`edge`).
+    /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
+    /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`).
     pub ignored: Vec<String>,
 }
 
@@ -148,6 +150,16 @@ fn read_limited(source: impl Read, size_hint: u64) -> Result<Vec<u8>, ReadError>
     Ok(bytes)
 }
 
+/// What a writer left out because the format has no place for it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct WriteReport {
+    /// Names of attributes that were left out.
+    pub ignored: Vec<String>,
+    /// Names of attributes that do not have a value everywhere, in a format that must: zeros were written.
+    pub zeroed: Vec<String>,
+}
+
 /// Writes a mesh file; the ending of `path` says which format, a further `.zst` compresses it.
 ///
 /// The file appears complete or not at all (see [`write_atomic`]).
@@ -155,18 +167,32 @@ fn read_limited(source: impl Read, size_hint: u64) -> Result<Vec<u8>, ReadError>
 /// # Errors
 /// If the file cannot be written, its ending is unknown, or the format cannot hold the mesh.
 pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
+    write_with_attributes(path, mesh, &Attributes::default()).map(drop)
+}
+
+/// As [`write`], with those of the attributes that the format can hold.
+///
+/// # Errors
+/// As [`write`], and if an attribute does not fit the mesh.
+pub fn write_with_attributes(
+    path: impl AsRef<Path>,
+    mesh: &TriMesh,
+    attributes: &Attributes,
+) -> Result<WriteReport, WriteError> {
     let path = path.as_ref();
     let (format, is_compressed) = format_and_compression(path).ok_or(WriteError::UnknownEnding)?;
+    let mut report = WriteReport::default();
     write_atomic(path, |out| {
         if is_compressed {
             let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
-            write_to(&mut compressor, mesh, format)?;
+            report = write_with_attributes_to(&mut compressor, mesh, attributes, format)?;
             compressor.finish()?;
-            Ok(())
         } else {
-            write_to(out, mesh, format)
+            report = write_with_attributes_to(out, mesh, attributes, format)?;
         }
-    })
+        Ok::<(), WriteError>(())
+    })?;
+    Ok(report)
 }
 
 /// Writes `mesh` in `format`, uncompressed. Writes are small: pass a buffered writer.
@@ -177,13 +203,40 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// If `out` fails, or the format cannot hold the mesh.
-pub fn write_to(mut out: impl Write, mesh: &TriMesh, format: Format) -> Result<(), WriteError> {
-    match format {
-        Format::Obj => obj::write(&mut out, mesh)?,
-        Format::Ply => ply::write(&mut out, mesh)?,
-        Format::Stl => stl::write(&mut out, mesh)?,
+pub fn write_to(out: impl Write, mesh: &TriMesh, format: Format) -> Result<(), WriteError> {
+    write_with_attributes_to(out, mesh, &Attributes::default(), format).map(drop)
+}
+
+/// As [`write_to`], with those of the attributes that the format can hold.
+///
+/// - OBJ: normals, texture coordinates and a colour per vertex, one set each; names of materials, groups and
+///   objects.
+/// - PLY: whatever belongs to vertices and faces and is no name, in its type; attributes of corners if they
+///   have no seam, and one set of texture coordinates if they have.
+/// - STL: nothing.
+///
+/// # Errors
+/// As [`write_to`], and if an attribute does not fit the mesh.
+pub fn write_with_attributes_to(
+    mut out: impl Write,
+    mesh: &TriMesh,
+    attributes: &Attributes,
+    format: Format,
+) -> Result<WriteReport, WriteError> {
+    for attribute in &attributes.list {
+        let misfit = |error| format!("attribute {}: {error}", attribute.name);
+        let misfit = |error| WriteError::Unrepresentable { message: misfit(error) };
+        attribute.validate(mesh).map_err(misfit)?;
     }
-    Ok(())
+    match format {
+        Format::Obj => Ok(obj::write(&mut out, mesh, attributes)?),
+        Format::Ply => Ok(ply::write(&mut out, mesh, attributes)?),
+        Format::Stl => {
+            stl::write(&mut out, mesh)?;
+            let ignored = attributes.list.iter().map(|attribute| attribute.name.clone()).collect();
+            Ok(WriteReport { ignored, ..WriteReport::default() })
+        }
+    }
 }
 
 /// Writes `mesh` as PLY with a colour per vertex (properties `red`, `green` and `blue`), else as
@@ -191,14 +244,13 @@ pub fn write_to(mut out: impl Write, mesh: &TriMesh, format: Format) -> Result<(
 ///
 /// # Errors
 /// If `out` fails, or there is not one colour per vertex.
-pub fn write_ply_coloured(
-    mut out: impl Write,
-    mesh: &TriMesh,
-    colours: &[[u8; 3]],
-) -> Result<(), WriteError> {
+pub fn write_ply_coloured(out: impl Write, mesh: &TriMesh, colours: &[[u8; 3]]) -> Result<(), WriteError> {
     if colours.len() != mesh.num_vertices() {
         let message = format!("{} colours for {} vertices", colours.len(), mesh.num_vertices());
         return Err(WriteError::Unrepresentable { message });
     }
-    Ok(ply::write_coloured(&mut out, mesh, Some(colours))?)
+    let values = Values::U8(colours.as_flattened().to_vec());
+    let colour = Attribute::new("red green blue", Semantic::Color(0), Domain::Vertex, 3, values);
+    let attributes = Attributes { list: vec![colour], ..Attributes::default() };
+    write_with_attributes_to(out, mesh, &attributes, Format::Ply).map(drop)
 }
