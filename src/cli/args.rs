@@ -47,7 +47,7 @@ pub enum Command {
     View(View),
 }
 
-/// Encode a mesh file (.obj .ply .stl, each also as .zst).
+/// Encode a mesh file (.obj .ply .stl .glb .gltf, each also as .zst).
 ///
 /// The finest level is the mesh on a grid of 2^BITS cells along its longest side; every oriented
 /// triangle comes back exactly. What has to be dropped or cut is counted in warnings.
@@ -95,6 +95,10 @@ pub struct Encode {
     #[arg(long, value_name = "STEPS")]
     #[arg(allow_negative_numbers = true, value_parser = quantity::number(0.5, 1e9))]
     pub steps_per_edge: Option<f64>,
+    /// Join the meshes of a scene (.glb .gltf) into one. They are joined without it too, with a note: streams
+    /// of several meshes are not there yet.
+    #[arg(long)]
+    pub merge: bool,
     /// Decode the stream and compare it with the mesh before it is written.
     #[arg(long)]
     pub verify: bool,
@@ -141,7 +145,7 @@ pub struct Decode {
     /// Stream to decode; standard input if it is `-` or missing.
     #[arg(value_name = "FILE.lwc")]
     pub input: Option<PathBuf>,
-    /// Mesh to write, its ending is its format (.obj .ply .stl, each also with .zst); `-` for standard
+    /// Mesh to write, its ending is its format (.obj .ply .stl .glb .gltf, each also with .zst); `-` for standard
     /// output. Default: model.level5.obj with `--level 5`, model.decoded.obj without, beside model.lwc.
     ///
     /// A file that exists is replaced once the new one is complete; the input is never replaced.
@@ -223,7 +227,7 @@ pub struct Describe {
 /// Measure the distance between two surfaces.
 ///
 /// Root mean square and maximum of the distance to the nearest point of the other, in both directions.
-/// Each file is a mesh (.obj .ply .stl, each also as .zst) or a stream (.lwc).
+/// Each file is a mesh (.obj .ply .stl .glb .gltf, each also as .zst) or a stream (.lwc).
 #[derive(Debug, clap::Args)]
 pub struct Compare {
     /// Reference: relative values are divided by the diagonal of its bounding box.
@@ -245,7 +249,7 @@ pub struct Compare {
 
 /// Show a model in the browser: something at once, finer while it loads.
 ///
-/// Serves a page on this machine, prints its address and opens it. A mesh (.obj .ply .stl, each also as
+/// Serves a page on this machine, prints its address and opens it. A mesh (.obj .ply .stl .glb .gltf, each also as
 /// .zst) is encoded first, with default options.
 #[derive(Debug, clap::Args)]
 pub struct View {
@@ -291,9 +295,8 @@ fn optimize_parser() -> impl TypedValueParser<Value = Optimize> {
 
 fn format_parser() -> impl TypedValueParser<Value = lwc::io::Format> {
     use lwc::io::Format;
-    let all = [Format::Obj, Format::Ply, Format::Stl];
-    PossibleValuesParser::new(all.map(Format::extension))
-        .try_map(move |name| all.into_iter().find(|f| f.extension() == name).ok_or("unknown format"))
+    PossibleValuesParser::new(Format::ALL.iter().map(|format| format.extension()))
+        .try_map(|name| Format::ALL.iter().copied().find(|f| f.extension() == name).ok_or("unknown format"))
 }
 
 #[cfg(test)]

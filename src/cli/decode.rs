@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let source = StreamSource::new(args.input.as_deref())?;
     let (destination, format) = destination(args, source.path())?;
-    destination.check(source.path(), format == Format::Obj)?;
+    destination.check(source.path(), format.is_text())?;
 
     let mut options = DecodeOptions::new().limits(args.limits.limits());
     if let Some(level) = args.level {

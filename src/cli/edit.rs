@@ -29,7 +29,7 @@ pub struct Edit {
     /// The changed mesh, with the vertices and faces of a level.
     #[arg(value_name = "CHANGED")]
     pub changed: PathBuf,
-    /// Mesh to write, its ending is its format (.obj .ply .stl, each also with .zst).
+    /// Mesh to write, its ending is its format (.obj .ply .stl .glb .gltf, each also with .zst).
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     #[command(flatten)]

@@ -40,6 +40,9 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     destination.check(Some(&args.input), false)?;
     let start = Instant::now();
     let file = read_mesh(&args.input, ui)?;
+    if !args.merge {
+        note_if_merged(&args.input.display().to_string(), &file, ui);
+    }
     let read_seconds = start.elapsed().as_secs_f64();
 
     let name = args.input.display().to_string();
@@ -63,6 +66,14 @@ fn encode(file: &MeshFile, args: &Encode, ui: &Ui) -> Result<Encoded, lwc::Encod
     let bar = ui.bar("encoding");
     let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
     lwc::encode_with_progress(&file.mesh, &args.options(), &progress)
+}
+
+fn note_if_merged(name: &str, file: &MeshFile, ui: &Ui) {
+    let instances = file.attributes.list.iter().find(|attribute| attribute.name == "node");
+    if let Some(instances) = instances {
+        let what = format!("{} joined into one mesh", counted(instances.num_rows(), "instance", "instances"));
+        ui.note(name, &what);
+    }
 }
 
 fn warn_about(name: &str, repair: &RepairReport, ui: &Ui) {

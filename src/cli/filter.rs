@@ -29,7 +29,7 @@ Examples:
   lwc filter model.ply --gain 8..10=2 -o bold.ply        # levels 8 to 10 twice as strong
   lwc filter scan.ply --denoise -o clean.ply")]
 pub struct Filter {
-    /// Mesh (.obj .ply .stl, each also as .zst).
+    /// Mesh (.obj .ply .stl .glb .gltf, each also as .zst).
     #[arg(value_name = "MESH")]
     pub input: PathBuf,
     /// Mesh to write, its ending is its format.

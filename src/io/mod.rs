@@ -1,4 +1,4 @@
-//! Mesh files: OBJ, PLY and STL, each also compressed with zstd (`.zst`).
+//! Mesh files: OBJ, PLY, STL and glTF (feature `gltf`), each also compressed with zstd (`.zst`).
 //!
 //! The file formats stay at the edge of the crate: a file becomes a [`TriMesh`], its [`Attributes`] and a
 //! [`ReadReport`], these become a file, and nothing else knows that files exist.
@@ -16,13 +16,20 @@
 mod atomic;
 mod builder;
 mod error;
+#[cfg(feature = "gltf")]
+mod gltf;
 mod obj;
 mod ply;
+#[cfg(feature = "gltf")]
+mod scene;
 mod stl;
 mod text;
+mod texture;
 
 pub use atomic::write_atomic;
 pub use error::{Place, ReadError, WriteError};
+#[cfg(feature = "gltf")]
+pub use scene::{Instance, Scene};
 
 use crate::mesh::{Attribute, Attributes, Domain, Semantic, TriMesh, Values};
 use std::{
@@ -47,9 +54,42 @@ pub enum Format {
     Ply,
     /// STL: triangles without shared vertices, float32.
     Stl,
+    /// glTF 2.0 in one binary file, float32.
+    #[cfg(feature = "gltf")]
+    Glb,
+    /// glTF 2.0 as text, with buffers inside or in other files, float32.
+    #[cfg(feature = "gltf")]
+    Gltf,
+}
+
+/// `.obj, .ply and .stl`, of all formats there are.
+fn known_endings() -> String {
+    let endings: Vec<String> = Format::ALL.iter().map(|format| format!(".{}", format.extension())).collect();
+    endings.join(", ")
 }
 
 impl Format {
+    /// All formats that this build knows.
+    pub const ALL: &[Self] = &[
+        Self::Obj,
+        Self::Ply,
+        Self::Stl,
+        #[cfg(feature = "gltf")]
+        Self::Glb,
+        #[cfg(feature = "gltf")]
+        Self::Gltf,
+    ];
+
+    /// Whether such a file can be looked at in a terminal.
+    pub fn is_text(self) -> bool {
+        match self {
+            Self::Obj => true,
+            #[cfg(feature = "gltf")]
+            Self::Gltf => true,
+            _ => false,
+        }
+    }
+
     /// The format that the ending of `path` names, in any case; a further `.zst` is looked past.
     /// `None` if the ending is none of ours.
     pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
@@ -62,6 +102,10 @@ impl Format {
             Self::Obj => "obj",
             Self::Ply => "ply",
             Self::Stl => "stl",
+            #[cfg(feature = "gltf")]
+            Self::Glb => "glb",
+            #[cfg(feature = "gltf")]
+            Self::Gltf => "gltf",
         }
     }
 }
@@ -72,7 +116,7 @@ fn format_and_compression(path: &Path) -> Option<(Format, bool)> {
     let last = ending(path)?;
     let is_compressed = last == "zst";
     let named = if is_compressed { ending(path.file_stem()?.as_ref())? } else { last };
-    let format = [Format::Obj, Format::Ply, Format::Stl].into_iter().find(|f| f.extension() == named)?;
+    let format = *Format::ALL.iter().find(|f| f.extension() == named)?;
     Some((format, is_compressed))
 }
 
@@ -96,7 +140,7 @@ pub struct ReadReport {
     pub polygons_triangulated: usize,
     /// Faces of fewer than three corners, left out.
     pub faces_skipped: usize,
-    /// STL only: corners that were joined with an earlier corner at exactly the same place.
+    /// STL and glTF: corners or vertices that were joined with an earlier one at exactly the same place.
     pub corners_welded: usize,
     /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
     /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`).
@@ -105,13 +149,25 @@ pub struct ReadReport {
 
 /// Reads a mesh file; the ending of `path` says which format (see [`Format::from_path`]).
 ///
-/// A well-formed file without vertices or faces is a mesh without vertices or faces, not an error.
+/// A well-formed file without vertices or faces is a mesh without vertices or faces, not an error. The meshes
+/// of a glTF scene become one, each in its place. Buffers of glTF in other files are read too, if they are in
+/// the folder of `path` or below.
 ///
 /// # Errors
 /// If the file cannot be read, its ending is unknown, it is larger than [`MAX_FILE_BYTES`], or it is damaged.
 /// The error names the place in the file and the cause; the caller knows the file's name and puts it in front.
 pub fn read(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
     let path = path.as_ref();
+    let (bytes, format) = read_file(path)?;
+    match format {
+        #[cfg(feature = "gltf")]
+        Format::Glb | Format::Gltf => gltf::read(&bytes, path.parent())?.merge(),
+        _ => read_bytes(&bytes, format),
+    }
+}
+
+/// The (uncompressed) bytes of a file, and what its ending says they are.
+fn read_file(path: &Path) -> Result<(Vec<u8>, Format), ReadError> {
     let (format, is_compressed) = format_and_compression(path).ok_or(ReadError::UnknownEnding)?;
     let file = File::open(path)?;
     let bytes = if is_compressed {
@@ -123,10 +179,26 @@ pub fn read(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
         let size_hint = file.metadata()?.len();
         read_limited(file, size_hint)?
     };
-    read_bytes(&bytes, format)
+    Ok((bytes, format))
 }
 
-/// Reads a mesh from the (uncompressed) bytes of a file.
+/// Reads a file of several meshes, each in its own coordinates; one of a format without scenes is one mesh in
+/// its place.
+///
+/// # Errors
+/// As [`read`].
+#[cfg(feature = "gltf")]
+pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene, ReadError> {
+    let path = path.as_ref();
+    let (bytes, format) = read_file(path)?;
+    match format {
+        Format::Glb | Format::Gltf => gltf::read(&bytes, path.parent()),
+        _ => Ok(read_bytes(&bytes, format)?.into()),
+    }
+}
+
+/// Reads a mesh from the (uncompressed) bytes of a file. Nothing else is read: glTF must have its buffers
+/// inside.
 ///
 /// # Errors
 /// As [`read`].
@@ -135,6 +207,8 @@ pub fn read_bytes(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
         Format::Obj => obj::read(bytes),
         Format::Ply => ply::read(bytes),
         Format::Stl => stl::read(bytes),
+        #[cfg(feature = "gltf")]
+        Format::Glb | Format::Gltf => gltf::read(bytes, None)?.merge(),
     }
 }
 
@@ -200,6 +274,7 @@ pub fn write_with_attributes(
 /// - OBJ: shortest decimal numbers that read back as the same float64.
 /// - PLY: binary little-endian; `float` if every coordinate is a float32, else `double`.
 /// - STL: binary; coordinates are rounded to float32 and vertices are no longer shared.
+/// - glTF: coordinates are rounded to float32.
 ///
 /// # Errors
 /// If `out` fails, or the format cannot hold the mesh.
@@ -214,6 +289,8 @@ pub fn write_to(out: impl Write, mesh: &TriMesh, format: Format) -> Result<(), W
 /// - PLY: whatever belongs to vertices and faces and is no name, in its type; attributes of corners if they
 ///   have no seam, and one set of texture coordinates if they have.
 /// - STL: nothing.
+/// - glTF: normals, made unit vectors; texture coordinates, colours and what else vertices and corners have, in
+///   its type if glTF has it there, else as float32; names of materials. Vertices are split at seams.
 ///
 /// # Errors
 /// As [`write_to`], and if an attribute does not fit the mesh.
@@ -236,6 +313,10 @@ pub fn write_with_attributes_to(
             let ignored = attributes.list.iter().map(|attribute| attribute.name.clone()).collect();
             Ok(WriteReport { ignored, ..WriteReport::default() })
         }
+        #[cfg(feature = "gltf")]
+        Format::Glb => gltf::write(&mut out, mesh, attributes, gltf::Container::Glb),
+        #[cfg(feature = "gltf")]
+        Format::Gltf => gltf::write(&mut out, mesh, attributes, gltf::Container::Text),
     }
 }
 

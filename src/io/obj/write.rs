@@ -1,7 +1,7 @@
 //! Writing OBJ. The numbers are the shortest that read back exactly.
 
 use crate::{
-    io::WriteReport,
+    io::{WriteReport, texture::oriented},
     mesh::{Attribute, Attributes, Domain, Semantic, TriMesh},
 };
 use std::{
@@ -27,7 +27,8 @@ pub(in crate::io) fn write(
         }
         out.write_all(b"\n")?;
     }
-    for (keyword, table) in [("vt", layout.texture), ("vn", layout.normals)] {
+    let texture = layout.texture.as_deref();
+    for (keyword, table) in [("vt", texture), ("vn", layout.normals)] {
         let Some(table) = table else { continue };
         for row in 0..table.num_rows() {
             out.write_all(keyword.as_bytes())?;
@@ -51,7 +52,7 @@ pub(in crate::io) fn write(
         for (corner, &vertex) in triangle.iter().enumerate() {
             write!(out, " {}", u64::from(vertex) + 1)?;
             let row = |table: Option<&Attribute>| table?.row_at_corner(mesh, t, corner).map(|row| row + 1);
-            match (row(layout.texture), row(layout.normals)) {
+            match (row(texture), row(layout.normals)) {
                 (None, None) => {}
                 (Some(texture), None) => write!(out, "/{texture}")?,
                 (None, Some(normal)) => write!(out, "//{normal}")?,
@@ -67,7 +68,7 @@ pub(in crate::io) fn write(
 #[derive(Default)]
 struct Layout<'a> {
     colour: Option<Cow<'a, Attribute>>,
-    texture: Option<&'a Attribute>,
+    texture: Option<Cow<'a, Attribute>>,
     normals: Option<&'a Attribute>,
     names: Vec<(&'static str, &'a Attribute)>,
 }
@@ -96,7 +97,7 @@ impl<'a> Layout<'a> {
                 }
                 _ if attribute.values.names().is_some() => report.ignored.push(attribute.name.clone()),
                 (Semantic::TexCoord(_), _) if n <= 3 && layout.texture.is_none() => {
-                    layout.texture = Some(attribute);
+                    layout.texture = Some(oriented(attribute, false));
                 }
                 (Semantic::Normal, _) if n == 3 && layout.normals.is_none() => {
                     layout.normals = Some(attribute)

@@ -2,7 +2,7 @@
 
 use super::columns::{property_names, scalar_name};
 use crate::{
-    io::WriteReport,
+    io::{WriteReport, texture::oriented},
     mesh::{Attribute, Attributes, Domain, ScalarType, Semantic, TriMesh, Values},
 };
 use std::{
@@ -98,6 +98,10 @@ impl<'a> Layout<'a> {
 
 /// Integers that stand for fractions are understood as such in colours only: others become float32.
 fn written_as(attribute: Cow<'_, Attribute>) -> Cow<'_, Attribute> {
+    let attribute = match oriented(&attribute, false) {
+        Cow::Owned(turned) => Cow::Owned(turned),
+        Cow::Borrowed(_) => attribute,
+    };
     if !attribute.is_normalized || matches!(attribute.semantic, Semantic::Color(_)) {
         return attribute;
     }

@@ -115,6 +115,11 @@ impl Values {
         }
     }
 
+    /// An empty array of the same type.
+    pub fn emptied(&self) -> Self {
+        self.scalar_type().map_or(Self::Names(Vec::new()), Self::new)
+    }
+
     /// The type of the numbers, `None` if these are names.
     pub fn scalar_type(&self) -> Option<ScalarType> {
         match self {
@@ -181,6 +186,42 @@ impl Values {
         }
     }
 
+    /// Appends the numbers or names of an array of the same type. Does nothing if the types differ.
+    pub fn append(&mut self, other: Self) {
+        match (self, other) {
+            (Self::I8(v), Self::I8(w)) => v.extend(w),
+            (Self::U8(v), Self::U8(w)) => v.extend(w),
+            (Self::I16(v), Self::I16(w)) => v.extend(w),
+            (Self::U16(v), Self::U16(w)) => v.extend(w),
+            (Self::I32(v), Self::I32(w)) => v.extend(w),
+            (Self::U32(v), Self::U32(w)) => v.extend(w),
+            (Self::F32(v), Self::F32(w)) => v.extend(w),
+            (Self::F64(v), Self::F64(w)) => v.extend(w),
+            (Self::Names(v), Self::Names(w)) => v.extend(w),
+            _ => {}
+        }
+    }
+
+    /// Replaces the number at `index` by the one that has these bits. Does nothing beyond the end or to names.
+    pub fn set_bits(&mut self, index: usize, bits: u64) {
+        fn set<T>(vector: &mut [T], index: usize, value: T) {
+            if let Some(old) = vector.get_mut(index) {
+                *old = value;
+            }
+        }
+        match self {
+            Self::I8(v) => set(v, index, bits as i8),
+            Self::U8(v) => set(v, index, bits as u8),
+            Self::I16(v) => set(v, index, bits as i16),
+            Self::U16(v) => set(v, index, bits as u16),
+            Self::I32(v) => set(v, index, bits as i32),
+            Self::U32(v) => set(v, index, bits as u32),
+            Self::F32(v) => set(v, index, f32::from_bits(bits as u32)),
+            Self::F64(v) => set(v, index, f64::from_bits(bits)),
+            Self::Names(_) => {}
+        }
+    }
+
     /// Drops all beyond the first `len`.
     pub fn truncate(&mut self, len: usize) {
         with_vector!(self, v => v.truncate(len));
@@ -221,6 +262,9 @@ mod tests {
             assert_eq!((values.scalar_type(), values.len()), (Some(scalar), 1));
             assert_eq!((values.bits(0), values.number(0)), (Some(bits), Some(value)), "{scalar:?}");
             assert_eq!((values.bits(1), values.number(1)), (None, None));
+            values.set_bits(0, 0);
+            values.set_bits(1, 1);
+            assert_eq!((values.bits(0), values.len()), (Some(0), 1));
         }
     }
 
