@@ -49,8 +49,8 @@ fn destination(args: &Decode, source: Option<&Path>) -> Result<(Destination, For
     if destination == Destination::Stdout {
         return Ok((destination, args.format.unwrap_or(Format::Obj)));
     }
-    let by_ending =
-        Format::from_path(output).ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
+    let by_ending = Format::from_path(output).filter(|format| format.is_written());
+    let by_ending = by_ending.ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
     if args.format.is_some_and(|format| format != by_ending) {
         return Err(usage("--format differs from the ending")).with_context(|| destination.name());
     }

@@ -42,7 +42,8 @@ pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
     let Destination::File(path) = &destination else {
         return Err(Failure::Usage("an edited mesh needs a file, its ending is its format".into()).into());
     };
-    Format::from_path(path).ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
+    let format = Format::from_path(path).filter(|format| format.is_written());
+    format.ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
     destination.check(Some(&args.changed), false)?;
     destination.check(Some(&args.stream), false)?;
 

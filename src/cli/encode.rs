@@ -1,7 +1,7 @@
 //! `lwc encode`: a mesh file becomes a stream.
 
 use super::args::Encode;
-use super::input::{not_kept, read_mesh};
+use super::input::{not_kept, read_mesh, read_terrain};
 use super::output::{Destination, print_json, with_ending, without_mesh_ending};
 use super::quantity::counted;
 use super::ui::Ui;
@@ -39,7 +39,10 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let destination = args.destination();
     destination.check(Some(&args.input), false)?;
     let start = Instant::now();
-    let file = read_mesh(&args.input, ui)?;
+    let file = match args.terrain.options() {
+        Some(options) => read_terrain(&args.input, &options, ui)?,
+        None => read_mesh(&args.input, ui)?,
+    };
     if !args.merge {
         note_if_merged(&args.input.display().to_string(), &file, ui);
     }
@@ -189,6 +192,7 @@ impl Report<'_> {
             "polygons_triangulated": read.polygons_triangulated,
             "faces_skipped": read.faces_skipped,
             "corners_welded": read.corners_welded,
+            "points_left_out": read.points_left_out,
             "ignored": not_kept(self.file),
             "degenerate_faces": repair.degenerate_faces,
             "isolated_vertices": repair.isolated_vertices,

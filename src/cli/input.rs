@@ -4,7 +4,7 @@ use super::exit::Failure;
 use super::quantity::counted;
 use super::ui::{Bar, Ui};
 use anyhow::Context;
-use lwc::io::MeshFile;
+use lwc::io::{Format, MeshFile, ReadError, TerrainOptions};
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
 use std::fs::File;
 use std::io::{self, IsTerminal, Read};
@@ -12,10 +12,27 @@ use std::path::{Path, PathBuf};
 
 /// Reads a mesh file and warns about what it leaves out.
 pub fn read_mesh(path: &Path, ui: &Ui) -> anyhow::Result<MeshFile> {
+    read_with(path, || lwc::io::read(path), ui)
+}
+
+/// As [`read_mesh`], with options that are there for point clouds only.
+pub fn read_terrain(path: &Path, options: &TerrainOptions, ui: &Ui) -> anyhow::Result<MeshFile> {
+    if !matches!(Format::from_path(path), Some(Format::Las | Format::Laz)) {
+        let what = "--last-returns, --thin and --max-points are for point clouds, .las and .laz".to_owned();
+        return Err(Failure::Usage(what)).with_context(|| path.display().to_string());
+    }
+    read_with(path, || lwc::io::read_terrain(path, options), ui)
+}
+
+fn read_with(
+    path: &Path,
+    read: impl FnOnce() -> Result<MeshFile, ReadError>,
+    ui: &Ui,
+) -> anyhow::Result<MeshFile> {
     let name = path.display().to_string();
     let file = {
         let _spinner = ui.spinner("reading");
-        lwc::io::read(path).with_context(|| name.clone())?
+        read().with_context(|| name.clone())?
     };
     warn_about(&name, &file, ui);
     Ok(file)
@@ -37,6 +54,10 @@ fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
     if report.faces_skipped > 0 {
         let faces = counted(report.faces_skipped, "face", "faces");
         ui.warn(name, &format!("{faces} of fewer than three corners left out"));
+    }
+    if report.points_left_out > 0 {
+        let points = counted(report.points_left_out, "point", "points");
+        ui.warn(name, &format!("{points} left out: above others, or not wanted"));
     }
     let not_kept = not_kept(file);
     if !not_kept.is_empty() {

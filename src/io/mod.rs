@@ -1,4 +1,5 @@
-//! Mesh files: OBJ, PLY, STL and glTF (feature `gltf`), each also compressed with zstd (`.zst`).
+//! Mesh files: OBJ, PLY, STL, glTF (feature `gltf`) and terrain in LAS and LAZ (feature `las`), each also
+//! compressed with zstd (`.zst`).
 //!
 //! The file formats stay at the edge of the crate: a file becomes a [`TriMesh`], its [`Attributes`] and a
 //! [`ReadReport`], these become a file, and nothing else knows that files exist.
@@ -18,6 +19,8 @@ mod builder;
 mod error;
 #[cfg(feature = "gltf")]
 mod gltf;
+#[cfg(feature = "las")]
+mod las;
 mod obj;
 mod ply;
 #[cfg(feature = "gltf")]
@@ -28,6 +31,8 @@ mod texture;
 
 pub use atomic::write_atomic;
 pub use error::{Place, ReadError, WriteError};
+#[cfg(feature = "las")]
+pub use las::TerrainOptions;
 #[cfg(feature = "gltf")]
 pub use scene::{Instance, Scene};
 
@@ -60,11 +65,18 @@ pub enum Format {
     /// glTF 2.0 as text, with buffers inside or in other files, float32.
     #[cfg(feature = "gltf")]
     Gltf,
+    /// LAS: points, which are triangulated in the plane. Is read and not written.
+    #[cfg(feature = "las")]
+    Las,
+    /// LAZ: the same, compressed.
+    #[cfg(feature = "las")]
+    Laz,
 }
 
-/// `.obj, .ply and .stl`, of all formats there are.
-fn known_endings() -> String {
-    let endings: Vec<String> = Format::ALL.iter().map(|format| format!(".{}", format.extension())).collect();
+/// `.obj, .ply, .stl`, of all formats that are wanted.
+fn known_endings(is_wanted: impl Fn(Format) -> bool) -> String {
+    let formats = Format::ALL.iter().copied().filter(|&format| is_wanted(format));
+    let endings: Vec<String> = formats.map(|format| format!(".{}", format.extension())).collect();
     endings.join(", ")
 }
 
@@ -78,7 +90,20 @@ impl Format {
         Self::Glb,
         #[cfg(feature = "gltf")]
         Self::Gltf,
+        #[cfg(feature = "las")]
+        Self::Las,
+        #[cfg(feature = "las")]
+        Self::Laz,
     ];
+
+    /// Whether meshes can be written in it; all can be read.
+    pub fn is_written(self) -> bool {
+        match self {
+            #[cfg(feature = "las")]
+            Self::Las | Self::Laz => false,
+            _ => true,
+        }
+    }
 
     /// Whether such a file can be looked at in a terminal.
     pub fn is_text(self) -> bool {
@@ -106,6 +131,10 @@ impl Format {
             Self::Glb => "glb",
             #[cfg(feature = "gltf")]
             Self::Gltf => "gltf",
+            #[cfg(feature = "las")]
+            Self::Las => "las",
+            #[cfg(feature = "las")]
+            Self::Laz => "laz",
         }
     }
 }
@@ -142,6 +171,9 @@ pub struct ReadReport {
     pub faces_skipped: usize,
     /// STL and glTF: corners or vertices that were joined with an earlier one at exactly the same place.
     pub corners_welded: usize,
+    /// LAS only: points that are no vertices, because they lie above another, are not the last return, or were
+    /// thinned out.
+    pub points_left_out: usize,
     /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
     /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`).
     pub ignored: Vec<String>,
@@ -197,6 +229,28 @@ pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene, ReadError> {
     }
 }
 
+/// Reads a point cloud (`.las`, `.laz`, also `.zst`) and triangulates it in the plane.
+///
+/// # Errors
+/// As [`read`]; the ending of any other format is an unknown one here.
+#[cfg(feature = "las")]
+pub fn read_terrain(path: impl AsRef<Path>, options: &TerrainOptions) -> Result<MeshFile, ReadError> {
+    let (bytes, format) = read_file(path.as_ref())?;
+    match format {
+        Format::Las | Format::Laz => las::read(&bytes, options),
+        _ => Err(ReadError::UnknownEnding),
+    }
+}
+
+/// As [`read_terrain`], from the (uncompressed) bytes of a file.
+///
+/// # Errors
+/// As [`read`].
+#[cfg(feature = "las")]
+pub fn read_terrain_bytes(bytes: &[u8], options: &TerrainOptions) -> Result<MeshFile, ReadError> {
+    las::read(bytes, options)
+}
+
 /// Reads a mesh from the (uncompressed) bytes of a file. Nothing else is read: glTF must have its buffers
 /// inside.
 ///
@@ -209,6 +263,8 @@ pub fn read_bytes(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
         Format::Stl => stl::read(bytes),
         #[cfg(feature = "gltf")]
         Format::Glb | Format::Gltf => gltf::read(bytes, None)?.merge(),
+        #[cfg(feature = "las")]
+        Format::Las | Format::Laz => las::read(bytes, &TerrainOptions::default()),
     }
 }
 
@@ -254,7 +310,8 @@ pub fn write_with_attributes(
     attributes: &Attributes,
 ) -> Result<WriteReport, WriteError> {
     let path = path.as_ref();
-    let (format, is_compressed) = format_and_compression(path).ok_or(WriteError::UnknownEnding)?;
+    let known = format_and_compression(path).filter(|(format, _)| format.is_written());
+    let (format, is_compressed) = known.ok_or(WriteError::UnknownEnding)?;
     let mut report = WriteReport::default();
     write_atomic(path, |out| {
         if is_compressed {
@@ -317,6 +374,11 @@ pub fn write_with_attributes_to(
         Format::Glb => gltf::write(&mut out, mesh, attributes, gltf::Container::Glb),
         #[cfg(feature = "gltf")]
         Format::Gltf => gltf::write(&mut out, mesh, attributes, gltf::Container::Text),
+        #[cfg(feature = "las")]
+        Format::Las | Format::Laz => {
+            let message = "point clouds are read and not written".to_owned();
+            Err(WriteError::Unrepresentable { message })
+        }
     }
 }
 
