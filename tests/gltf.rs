@@ -493,3 +493,13 @@ fn a_glb_is_framed_as_it_should_be() {
     assert_eq!(named(&again, "_HEAT").values, Values::F32(vec![0.1, 0.2, 0.3]));
     assert_eq!(named(&again, "_SMALL_INT").values, attributes.list[5].values);
 }
+
+#[test]
+fn a_stored_file_is_read() {
+    let file =
+        io::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/seam.glb")).unwrap();
+    assert_eq!((file.mesh.num_vertices(), file.mesh.num_triangles()), (5, 2));
+    assert_eq!(named(&file, "material").values.names().unwrap(), ["red", "blue"]);
+    assert_eq!(named(&file, "TEXCOORD_0").domain, Domain::Corner);
+    assert_eq!(named(&file, "COLOR_0").domain, Domain::Vertex);
+}

@@ -237,6 +237,15 @@ fn damaged_compression_is_refused_without_harm() {
     }
 }
 
+#[test]
+fn stored_files_are_read_alike() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let plain = io::read(folder.join("terrain.las")).unwrap();
+    assert_eq!((plain.mesh.num_vertices(), plain.mesh.num_triangles()), (40, 64));
+    assert_eq!(io::read(folder.join("terrain.laz")).unwrap(), plain);
+    assert_eq!(io::read(folder.join("terrain-layered.laz")).unwrap(), plain);
+}
+
 // --- The corpus ----------------------------------------------------------------------------------------
 
 /// The test meshes, which are not part of the repository.
