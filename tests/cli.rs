@@ -162,7 +162,7 @@ fn values_out_of_range_are_wrong_usage() {
         "decode ball.lwc --max-memory lots",
         "decode ball.lwc --max-vertices 5G",
         "decode ball.lwc --level -1",
-        "decode x --format gltf",
+        "decode x --format laz",
         "compare ball.ply",
         "compare ball.ply ball.ply --samples many",
         "describe ball.ply -d none",
@@ -175,11 +175,14 @@ fn values_out_of_range_are_wrong_usage() {
 fn unknown_endings_are_named() {
     let workshop = Workshop::new();
     workshop.ball_stream();
-    fs::copy(workshop.path("ball.ply"), workshop.path("ball.gltf")).unwrap();
-    let stderr = workshop.fails("encode ball.gltf", 3);
-    assert!(error_line(&stderr).starts_with("lwc: ball.gltf: ") && stderr.contains(".obj, .ply and .stl"));
-    let stderr = workshop.fails("decode ball.lwc -o ball.glb", 2);
-    assert!(error_line(&stderr).starts_with("lwc: ball.glb: ") && stderr.contains(".obj, .ply and .stl"));
+    fs::copy(workshop.path("ball.ply"), workshop.path("ball.fbx")).unwrap();
+    let stderr = workshop.fails("encode ball.fbx", 3);
+    let known = ".obj, .ply, .stl, .glb, .gltf, .las, .laz,";
+    assert!(error_line(&stderr).starts_with("lwc: ball.fbx: ") && stderr.contains(known), "{stderr}");
+    let stderr = workshop.fails("decode ball.lwc -o ball.fbx", 2);
+    let known = ".obj, .ply, .stl, .glb, .gltf,";
+    assert!(error_line(&stderr).starts_with("lwc: ball.fbx: ") && stderr.contains(known), "{stderr}");
+    assert!(!stderr.contains(".las"), "{stderr}");
     let stderr = workshop.fails("describe ball.ply -o ball.txt", 2);
     assert!(error_line(&stderr).contains(".csv"));
     let stderr = workshop.fails("decode ball.lwc --format stl -o ball.obj", 2);

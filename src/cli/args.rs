@@ -175,8 +175,9 @@ pub struct Decode {
     /// Stream to decode; standard input if it is `-` or missing.
     #[arg(value_name = "FILE.lwc")]
     pub input: Option<PathBuf>,
-    /// Mesh to write, its ending is its format (.obj .ply .stl .glb .gltf, each also with .zst); `-` for standard
-    /// output. Default: model.level5.obj with `--level 5`, model.decoded.obj without, beside model.lwc.
+    /// Mesh to write, its ending is its format (.obj .ply .stl .glb .gltf, each also with .zst); `-` for
+    /// standard output. Default: model.level5.obj with `--level 5`, model.decoded.obj without, beside
+    /// model.lwc.
     ///
     /// A file that exists is replaced once the new one is complete; the input is never replaced.
     #[arg(short, long, value_name = "FILE")]
@@ -279,8 +280,8 @@ pub struct Compare {
 
 /// Show a model in the browser: something at once, finer while it loads.
 ///
-/// Serves a page on this machine, prints its address and opens it. A mesh (.obj .ply .stl .glb .gltf .las .laz, each
-/// also as .zst) is encoded first, with default options.
+/// Serves a page on this machine, prints its address and opens it. A mesh (.obj .ply .stl .glb .gltf .las
+/// .laz, each also as .zst) is encoded first, with default options.
 #[derive(Debug, clap::Args)]
 pub struct View {
     /// Stream (.lwc) or mesh to show.

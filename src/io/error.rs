@@ -36,7 +36,7 @@ pub enum ReadError {
     #[error("cannot decompress: {0}")]
     Zstd(#[source] io::Error),
     /// The ending of the file's name is not that of a format we know.
-    #[error("unknown file ending; known are {known}, each also with .zst", known = super::known_endings(|_| true))]
+    #[error("unknown file ending; known are {}, each also with .zst", super::known_endings(|_| true))]
     UnknownEnding,
     /// The file breaks the rules of its format, ends early, or holds numbers no mesh can have.
     #[error("{place}: {message}")]
@@ -83,7 +83,10 @@ pub enum WriteError {
     #[error(transparent)]
     Io(#[from] io::Error),
     /// The ending of the file's name is not that of a format we know.
-    #[error("unknown file ending; known are {known}, each also with .zst", known = super::known_endings(super::Format::is_written))]
+    #[error(
+        "unknown file ending; known are {}, each also with .zst",
+        super::known_endings(super::Format::is_written)
+    )]
     UnknownEnding,
     /// The format cannot hold this mesh.
     #[error("{message}")]

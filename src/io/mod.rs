@@ -300,10 +300,10 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
     write_with_attributes(path, mesh, &Attributes::default()).map(drop)
 }
 
-/// As [`write`], with those of the attributes that the format can hold.
+/// As [`write()`], with those of the attributes that the format can hold.
 ///
 /// # Errors
-/// As [`write`], and if an attribute does not fit the mesh.
+/// As [`write()`], and if an attribute does not fit the mesh.
 pub fn write_with_attributes(
     path: impl AsRef<Path>,
     mesh: &TriMesh,
