@@ -1,5 +1,6 @@
 //! Attributes of mesh files: what comes in with a mesh goes out with it.
 #![cfg(feature = "io")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use lwc::{
     TriMesh,
@@ -167,7 +168,21 @@ fn ply_texture_coordinates_of_corners_are_kept() {
     assert_eq!((file.report.faces_skipped, file.report.polygons_triangulated), (1, 1));
     let (again, report) = through(&file, Format::Ply);
     assert_eq!(report, WriteReport::default());
-    assert!(same(&at_corners(&again.mesh, named(&again, "texcoord")), &at_corners(&file.mesh, uv), 0.0));
+    for name in ["texcoord", "texnumber"] {
+        let (found, expected) = (named(&again, name), named(&file, name));
+        assert!(same(&at_corners(&again.mesh, found), &at_corners(&file.mesh, expected), 0.0), "{name}");
+    }
+}
+
+#[test]
+fn ply_names_of_any_kind_survive_but_for_control_characters() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n\
+                  property float z\nproperty char \u{1b}[31mn\u{0}\nproperty char h\u{f6}he\u{a0}\n\
+                  property char x_\nelement \u{7} 0\nend_header\n0 0 0 1 2 3\n";
+    let file = ply(header).unwrap();
+    assert_eq!(names(&file), ["\u{fffd}[31mn\u{fffd}", "h\u{f6}he\u{a0}", "x_"]);
+    assert_eq!(file.report.ignored, ["\u{fffd}"]);
+    assert_eq!(through(&file, Format::Ply).0.attributes, file.attributes);
 }
 
 #[test]

@@ -139,6 +139,8 @@ impl<'a> Gathered<'a> {
             self.positions.push(position);
         }
         for (name, &accessor) in attributes.iter().filter(|(name, _)| *name != "POSITION") {
+            // Names end up in messages: nothing in them may reach for the terminal.
+            let name = &name.replace(char::is_control, "\u{fffd}");
             let place = Place::Part("accessor", accessor);
             let array = match store.read(accessor) {
                 Err(ReadError::Unsupported { .. }) => {

@@ -82,9 +82,9 @@ pub(super) fn property_names(attribute: &Attribute) -> Vec<String> {
     let num_components = attribute.num_components;
     let own: Vec<&str> = attribute.name.split(' ').collect();
     let is_name =
-        |word: &&str| !word.is_empty() && !word.contains(|c: char| c.is_control() || c.is_whitespace());
+        |word: &&str| !word.is_empty() && !word.contains(|c: char| c.is_control() || c.is_ascii_whitespace());
     let is_free = |word: &&str| attribute.domain != Domain::Vertex || !matches!(*word, "x" | "y" | "z");
-    let is_usual = num_components > 1 || attribute.semantic == Semantic::Generic;
+    let is_usual = num_components > 1 || matches!(attribute.semantic, Semantic::Generic | Semantic::Material);
     if own.len() == num_components && is_usual && own.iter().all(|w| is_name(w) && is_free(w)) {
         return own.into_iter().map(str::to_owned).collect();
     }
@@ -99,7 +99,7 @@ pub(super) fn property_names(attribute: &Attribute) -> Vec<String> {
         let suffix = if set == 0 { String::new() } else { set.to_string() };
         return stems[..num_components].iter().map(|stem| format!("{stem}{suffix}")).collect();
     }
-    let clean = |c: char| if c.is_control() || c.is_whitespace() { '_' } else { c };
+    let clean = |c: char| if c.is_control() || c.is_ascii_whitespace() { '_' } else { c };
     let stem: String = attribute.name.chars().map(clean).collect();
     (0..num_components).map(|k| format!("{stem}_{k}")).collect()
 }

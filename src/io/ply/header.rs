@@ -72,7 +72,7 @@ pub(super) fn read_header(bytes: &[u8]) -> Result<(Header, Body<'_>), ReadError>
             [b"element", name, count] => {
                 let count = std::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
                 elements.push(Element {
-                    name: String::from_utf8_lossy(name).into_owned(),
+                    name: clean_name(name),
                     count: count.ok_or_else(|| bad("the count of an element is not a number"))?,
                     properties: Vec::new(),
                     place,
@@ -116,7 +116,7 @@ fn parse_property(declaration: &[&[u8]]) -> Option<Property> {
     if list_count.is_some_and(|count| !count.is_integer()) {
         return None;
     }
-    let name = String::from_utf8_lossy(name).into_owned();
+    let name = clean_name(name);
     Some(Property { name, list_count, scalar: scalar_from_name(scalar)? })
 }
 
@@ -132,4 +132,9 @@ fn scalar_from_name(name: &[u8]) -> Option<ScalarType> {
         b"double" | b"float64" => ScalarType::F64,
         _ => return None,
     })
+}
+
+/// Names end up in messages: nothing in them may reach for the terminal.
+fn clean_name(name: &[u8]) -> String {
+    String::from_utf8_lossy(name).replace(char::is_control, "\u{fffd}")
 }
