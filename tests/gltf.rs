@@ -1,5 +1,6 @@
 //! glTF: what a scene becomes, what is refused, and what is written.
 #![cfg(feature = "gltf")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use base64::Engine;
 use lwc::{

@@ -1,5 +1,6 @@
 //! Point clouds of terrain in LAS and LAZ.
 #![cfg(feature = "las")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use lwc::{
     io::{self, Format, MeshFile, Place, ReadError, TerrainOptions},

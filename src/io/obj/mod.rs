@@ -56,11 +56,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
     }
     let only_triangles = parsed.face_arities.is_empty();
     let arities = if only_triangles { vec![3; parsed.indices.len() / 3] } else { parsed.face_arities };
-    let mut rest = &parsed.indices[..];
     // The first polygon is the numbering.
-    let num_before = usize::from(num_vertices > 0);
-    let (numbering, faces) = arities.split_at(num_before.min(arities.len()));
-    rest = &rest[numbering.iter().map(|&arity| arity as usize).sum::<usize>().min(rest.len())..];
+    let (numbering, faces) = arities.split_at(usize::from(num_vertices > 0).min(arities.len()));
+    let num_numbered = numbering.iter().map(|&arity| arity as usize).sum();
+    let (_, mut rest) = parsed.indices.split_at(num_numbered);
     for &arity in faces {
         let (corners, after) = rest.split_at(arity as usize);
         rest = after;
