@@ -162,7 +162,7 @@ fn values_out_of_range_are_wrong_usage() {
         "decode ball.lwc --max-memory lots",
         "decode ball.lwc --max-vertices 5G",
         "decode ball.lwc --level -1",
-        "decode x --format gltf",
+        "decode x --format laz",
         "compare ball.ply",
         "compare ball.ply ball.ply --samples many",
         "describe ball.ply -d none",
@@ -175,11 +175,14 @@ fn values_out_of_range_are_wrong_usage() {
 fn unknown_endings_are_named() {
     let workshop = Workshop::new();
     workshop.ball_stream();
-    fs::copy(workshop.path("ball.ply"), workshop.path("ball.gltf")).unwrap();
-    let stderr = workshop.fails("encode ball.gltf", 3);
-    assert!(error_line(&stderr).starts_with("lwc: ball.gltf: ") && stderr.contains(".obj, .ply and .stl"));
-    let stderr = workshop.fails("decode ball.lwc -o ball.glb", 2);
-    assert!(error_line(&stderr).starts_with("lwc: ball.glb: ") && stderr.contains(".obj, .ply and .stl"));
+    fs::copy(workshop.path("ball.ply"), workshop.path("ball.fbx")).unwrap();
+    let stderr = workshop.fails("encode ball.fbx", 3);
+    let known = ".obj, .ply, .stl, .glb, .gltf, .las, .laz,";
+    assert!(error_line(&stderr).starts_with("lwc: ball.fbx: ") && stderr.contains(known), "{stderr}");
+    let stderr = workshop.fails("decode ball.lwc -o ball.fbx", 2);
+    let known = ".obj, .ply, .stl, .glb, .gltf,";
+    assert!(error_line(&stderr).starts_with("lwc: ball.fbx: ") && stderr.contains(known), "{stderr}");
+    assert!(!stderr.contains(".las"), "{stderr}");
     let stderr = workshop.fails("describe ball.ply -o ball.txt", 2);
     assert!(error_line(&stderr).contains(".csv"));
     let stderr = workshop.fails("decode ball.lwc --format stl -o ball.obj", 2);
@@ -281,6 +284,78 @@ fn what_is_dropped_is_counted() {
         assert!(stderr.contains(&format!("lwc: warning: odd.obj: {warning}")), "{warning}: {stderr}");
     }
     assert_eq!(workshop.ok("encode odd.obj --quiet").1, "");
+}
+
+#[test]
+fn what_a_stream_does_not_keep_is_told() {
+    let workshop = Workshop::new();
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float quality\n\
+               property list uchar int bones\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+               0 0 0 1 2 3 0.5 0\n1 0 0 1 2 3 0.5 0\n0 1 0 1 2 3 0.5 0\n3 0 1 2\n";
+    fs::write(workshop.path("rich.ply"), ply).unwrap();
+    let (_, stderr) = workshop.ok("encode rich.ply");
+    assert!(stderr.contains("rich.ply: not kept: vertex.bones, red/green/blue, quality"), "{stderr}");
+    let report = workshop.json("encode rich.ply --json");
+    assert_eq!(report["ignored"], serde_json::json!(["vertex.bones", "red/green/blue", "quality"]));
+}
+
+#[test]
+fn gltf_comes_in_and_goes_out() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    workshop.ok("decode ball.lwc -o ball.glb");
+    workshop.ok("decode ball.lwc -o ball.gltf --level 1");
+    let (text, _) = workshop.ok("decode ball.lwc -o - --format gltf");
+    assert!(text.starts_with('{'), "{}", &text[..20]);
+    let (_, stderr) = workshop.ok("encode ball.glb -o again.lwc --verify");
+    assert!(!stderr.contains("warning"), "{stderr}");
+    let distance = workshop.json("compare ball.ply ball.glb --json");
+    assert!(distance["db"].as_f64().is_none_or(|db| db > 60.0), "{distance}");
+
+    // The same mesh twice, one of them beside the other.
+    let document = fs::read_to_string(workshop.path("ball.gltf")).unwrap();
+    let mut document: Value = serde_json::from_str(&document).unwrap();
+    document["nodes"] = serde_json::json!([{ "mesh": 0 }, { "mesh": 0, "translation": [9, 0, 0] }]);
+    document["scenes"][0]["nodes"] = serde_json::json!([0, 1]);
+    fs::write(workshop.path("two.gltf"), document.to_string()).unwrap();
+    let (_, stderr) = workshop.ok("encode two.gltf");
+    assert!(stderr.contains("note: two.gltf: 2 instances joined into one mesh"), "{stderr}");
+    assert!(!workshop.ok("encode two.gltf --merge").1.contains("joined"));
+    let report = workshop.json("encode two.gltf --json --quiet");
+    let single = workshop.json("encode ball.gltf --json --quiet");
+    assert_eq!(report["faces"].as_u64(), single["faces"].as_u64().map(|faces| 2 * faces));
+}
+
+#[test]
+fn point_clouds_become_terrain() {
+    let workshop = Workshop::new();
+    let mut cloud = vec![0; 227];
+    let mut put = |at: usize, field: &[u8]| cloud[at..at + field.len()].copy_from_slice(field);
+    put(0, b"LASF");
+    put(24, &[1, 2]);
+    put(94, &227u16.to_le_bytes());
+    put(96, &227u32.to_le_bytes());
+    put(105, &20u16.to_le_bytes());
+    put(107, &400u32.to_le_bytes());
+    put(131, [0.5f64; 3].map(f64::to_le_bytes).as_flattened());
+    for k in 0..400i32 {
+        let mut record = [0; 20];
+        record[..12].copy_from_slice([k % 20, k / 20, k % 7].map(i32::to_le_bytes).as_flattened());
+        // Every other point is the first of two returns.
+        record[14] = 1 | (1 + (k % 2) as u8) << 3;
+        cloud.extend(record);
+    }
+    fs::write(workshop.path("scan.las"), cloud).unwrap();
+    assert_eq!(workshop.json("encode scan.las --json --verify")["vertices"], 400);
+    let (_, stderr) = workshop.ok("encode scan.las --last-returns");
+    assert!(stderr.contains("scan.las: 200 points left out"), "{stderr}");
+    assert!(stderr.contains("classification, intensity"), "{stderr}");
+    assert_eq!(workshop.json("encode scan.las --json --thin 2")["vertices"], 25);
+    assert!(workshop.json("encode scan.las --json --max-points 100")["vertices"].as_u64() <= Some(100));
+    workshop.fails("encode ball.ply --thin 2", 2);
+    workshop.ball_stream();
+    workshop.fails("decode ball.lwc -o ball.las", 2);
 }
 
 #[test]

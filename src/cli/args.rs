@@ -4,6 +4,7 @@ use super::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Parser, Subcommand, value_parser};
 use lwc::descriptors::{Descriptor, Window};
+use lwc::io::TerrainOptions;
 use lwc::{EncodeOptions, Limits, Optimize, Partition};
 use std::path::PathBuf;
 
@@ -47,7 +48,7 @@ pub enum Command {
     View(View),
 }
 
-/// Encode a mesh file (.obj .ply .stl, each also as .zst).
+/// Encode a mesh file (.obj .ply .stl .glb .gltf) or a point cloud of terrain (.las .laz), each also as .zst.
 ///
 /// The finest level is the mesh on a grid of 2^BITS cells along its longest side; every oriented
 /// triangle comes back exactly. What has to be dropped or cut is counted in warnings.
@@ -61,6 +62,8 @@ pub struct Encode {
     /// A file that exists is replaced once the new one is complete.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub terrain: Terrain,
     #[command(flatten)]
     pub scale: Scale,
     /// Bits per coordinate, 1 to 30.
@@ -95,12 +98,43 @@ pub struct Encode {
     #[arg(long, value_name = "STEPS")]
     #[arg(allow_negative_numbers = true, value_parser = quantity::number(0.5, 1e9))]
     pub steps_per_edge: Option<f64>,
+    /// Join the meshes of a scene (.glb .gltf) into one. They are joined without it too, with a note: streams
+    /// of several meshes are not there yet.
+    #[arg(long)]
+    pub merge: bool,
     /// Decode the stream and compare it with the mesh before it is written.
     #[arg(long)]
     pub verify: bool,
     /// Print one JSON object in place of the summary (to standard error with `-o -`).
     #[arg(long)]
     pub json: bool,
+}
+
+/// Which points of a point cloud become vertices.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Point clouds (.las .laz)")]
+pub struct Terrain {
+    /// Use only the last return of each pulse. Default: all.
+    #[arg(long)]
+    pub last_returns: bool,
+    /// Keep one point in each square of this size, in units of the file, above 0, at most 1e9.
+    #[arg(long, value_name = "SIZE", value_parser = quantity::number(f64::MIN_POSITIVE, 1e9))]
+    #[arg(allow_negative_numbers = true)]
+    pub thin: Option<f64>,
+    /// Keep at most so many points, spread evenly, e.g. 500K.
+    #[arg(long, value_name = "N", value_parser = quantity::count, allow_negative_numbers = true)]
+    pub max_points: Option<u32>,
+}
+
+impl Terrain {
+    /// The options of the library, `None` if none is given.
+    pub fn options(&self) -> Option<TerrainOptions> {
+        let mut options = TerrainOptions::default();
+        options.last_returns_only = self.last_returns;
+        options.cell_size = self.thin;
+        options.max_points = self.max_points.map(|points| points as usize);
+        Some(options).filter(|options| *options != TerrainOptions::default())
+    }
 }
 
 /// Descriptor and window.
@@ -141,8 +175,9 @@ pub struct Decode {
     /// Stream to decode; standard input if it is `-` or missing.
     #[arg(value_name = "FILE.lwc")]
     pub input: Option<PathBuf>,
-    /// Mesh to write, its ending is its format (.obj .ply .stl, each also with .zst); `-` for standard
-    /// output. Default: model.level5.obj with `--level 5`, model.decoded.obj without, beside model.lwc.
+    /// Mesh to write, its ending is its format (.obj .ply .stl .glb .gltf, each also with .zst); `-` for
+    /// standard output. Default: model.level5.obj with `--level 5`, model.decoded.obj without, beside
+    /// model.lwc.
     ///
     /// A file that exists is replaced once the new one is complete; the input is never replaced.
     #[arg(short, long, value_name = "FILE")]
@@ -223,7 +258,7 @@ pub struct Describe {
 /// Measure the distance between two surfaces.
 ///
 /// Root mean square and maximum of the distance to the nearest point of the other, in both directions.
-/// Each file is a mesh (.obj .ply .stl, each also as .zst) or a stream (.lwc).
+/// Each file is a mesh (.obj .ply .stl .glb .gltf .las .laz, each also as .zst) or a stream (.lwc).
 #[derive(Debug, clap::Args)]
 pub struct Compare {
     /// Reference: relative values are divided by the diagonal of its bounding box.
@@ -245,8 +280,8 @@ pub struct Compare {
 
 /// Show a model in the browser: something at once, finer while it loads.
 ///
-/// Serves a page on this machine, prints its address and opens it. A mesh (.obj .ply .stl, each also as
-/// .zst) is encoded first, with default options.
+/// Serves a page on this machine, prints its address and opens it. A mesh (.obj .ply .stl .glb .gltf .las
+/// .laz, each also as .zst) is encoded first, with default options.
 #[derive(Debug, clap::Args)]
 pub struct View {
     /// Stream (.lwc) or mesh to show.
@@ -291,9 +326,9 @@ fn optimize_parser() -> impl TypedValueParser<Value = Optimize> {
 
 fn format_parser() -> impl TypedValueParser<Value = lwc::io::Format> {
     use lwc::io::Format;
-    let all = [Format::Obj, Format::Ply, Format::Stl];
-    PossibleValuesParser::new(all.map(Format::extension))
-        .try_map(move |name| all.into_iter().find(|f| f.extension() == name).ok_or("unknown format"))
+    let written = || Format::ALL.iter().copied().filter(|format| format.is_written());
+    PossibleValuesParser::new(written().map(Format::extension))
+        .try_map(move |name| written().find(|f| f.extension() == name).ok_or("unknown format"))
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let source = StreamSource::new(args.input.as_deref())?;
     let (destination, format) = destination(args, source.path())?;
-    destination.check(source.path(), format == Format::Obj)?;
+    destination.check(source.path(), format.is_text())?;
 
     let mut options = DecodeOptions::new().limits(args.limits.limits());
     if let Some(level) = args.level {
@@ -49,8 +49,8 @@ fn destination(args: &Decode, source: Option<&Path>) -> Result<(Destination, For
     if destination == Destination::Stdout {
         return Ok((destination, args.format.unwrap_or(Format::Obj)));
     }
-    let by_ending =
-        Format::from_path(output).ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
+    let by_ending = Format::from_path(output).filter(|format| format.is_written());
+    let by_ending = by_ending.ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
     if args.format.is_some_and(|format| format != by_ending) {
         return Err(usage("--format differs from the ending")).with_context(|| destination.name());
     }

@@ -29,7 +29,7 @@ pub struct Edit {
     /// The changed mesh, with the vertices and faces of a level.
     #[arg(value_name = "CHANGED")]
     pub changed: PathBuf,
-    /// Mesh to write, its ending is its format (.obj .ply .stl, each also with .zst).
+    /// Mesh to write, its ending is its format (.obj .ply .stl .glb .gltf, each also with .zst).
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -42,7 +42,8 @@ pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
     let Destination::File(path) = &destination else {
         return Err(Failure::Usage("an edited mesh needs a file, its ending is its format".into()).into());
     };
-    Format::from_path(path).ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
+    let format = Format::from_path(path).filter(|format| format.is_written());
+    format.ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
     destination.check(Some(&args.changed), false)?;
     destination.check(Some(&args.stream), false)?;
 

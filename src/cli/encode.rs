@@ -1,7 +1,7 @@
 //! `lwc encode`: a mesh file becomes a stream.
 
 use super::args::Encode;
-use super::input::read_mesh;
+use super::input::{not_kept, read_mesh, read_terrain};
 use super::output::{Destination, print_json, with_ending, without_mesh_ending};
 use super::quantity::counted;
 use super::ui::Ui;
@@ -39,7 +39,13 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let destination = args.destination();
     destination.check(Some(&args.input), false)?;
     let start = Instant::now();
-    let file = read_mesh(&args.input, ui)?;
+    let file = match args.terrain.options() {
+        Some(options) => read_terrain(&args.input, &options, ui)?,
+        None => read_mesh(&args.input, ui)?,
+    };
+    if !args.merge {
+        note_if_merged(&args.input.display().to_string(), &file, ui);
+    }
     let read_seconds = start.elapsed().as_secs_f64();
 
     let name = args.input.display().to_string();
@@ -63,6 +69,14 @@ fn encode(file: &MeshFile, args: &Encode, ui: &Ui) -> Result<Encoded, lwc::Encod
     let bar = ui.bar("encoding");
     let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
     lwc::encode_with_progress(&file.mesh, &args.options(), &progress)
+}
+
+fn note_if_merged(name: &str, file: &MeshFile, ui: &Ui) {
+    let instances = file.attributes.list.iter().find(|attribute| attribute.name == "node");
+    if let Some(instances) = instances {
+        let what = format!("{} joined into one mesh", counted(instances.num_rows(), "instance", "instances"));
+        ui.note(name, &what);
+    }
 }
 
 fn warn_about(name: &str, repair: &RepairReport, ui: &Ui) {
@@ -178,7 +192,8 @@ impl Report<'_> {
             "polygons_triangulated": read.polygons_triangulated,
             "faces_skipped": read.faces_skipped,
             "corners_welded": read.corners_welded,
-            "ignored": read.ignored,
+            "points_left_out": read.points_left_out,
+            "ignored": not_kept(self.file),
             "degenerate_faces": repair.degenerate_faces,
             "isolated_vertices": repair.isolated_vertices,
             "repeated_vertices": repair.repeated_vertices,

@@ -29,7 +29,7 @@ Examples:
   lwc filter model.ply --gain 8..10=2 -o bold.ply        # levels 8 to 10 twice as strong
   lwc filter scan.ply --denoise -o clean.ply")]
 pub struct Filter {
-    /// Mesh (.obj .ply .stl, each also as .zst).
+    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, each also as .zst).
     #[arg(value_name = "MESH")]
     pub input: PathBuf,
     /// Mesh to write, its ending is its format.
@@ -113,7 +113,7 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
 /// Mesh files only.
 fn check(destination: &Destination) -> Result<(), WriteError> {
     match destination {
-        Destination::File(path) if Format::from_path(path).is_some() => Ok(()),
+        Destination::File(path) if Format::from_path(path).is_some_and(Format::is_written) => Ok(()),
         _ => Err(WriteError::UnknownEnding),
     }
 }

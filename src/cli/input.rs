@@ -4,7 +4,7 @@ use super::exit::Failure;
 use super::quantity::counted;
 use super::ui::{Bar, Ui};
 use anyhow::Context;
-use lwc::io::{MeshFile, ReadReport};
+use lwc::io::{Format, MeshFile, ReadError, TerrainOptions};
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
 use std::fs::File;
 use std::io::{self, IsTerminal, Read};
@@ -12,16 +12,41 @@ use std::path::{Path, PathBuf};
 
 /// Reads a mesh file and warns about what it leaves out.
 pub fn read_mesh(path: &Path, ui: &Ui) -> anyhow::Result<MeshFile> {
+    read_with(path, || lwc::io::read(path), ui)
+}
+
+/// As [`read_mesh`], with options that are there for point clouds only.
+pub fn read_terrain(path: &Path, options: &TerrainOptions, ui: &Ui) -> anyhow::Result<MeshFile> {
+    if !matches!(Format::from_path(path), Some(Format::Las | Format::Laz)) {
+        let what = "--last-returns, --thin and --max-points are for point clouds, .las and .laz".to_owned();
+        return Err(Failure::Usage(what)).with_context(|| path.display().to_string());
+    }
+    read_with(path, || lwc::io::read_terrain(path, options), ui)
+}
+
+fn read_with(
+    path: &Path,
+    read: impl FnOnce() -> Result<MeshFile, ReadError>,
+    ui: &Ui,
+) -> anyhow::Result<MeshFile> {
     let name = path.display().to_string();
     let file = {
         let _spinner = ui.spinner("reading");
-        lwc::io::read(path).with_context(|| name.clone())?
+        read().with_context(|| name.clone())?
     };
-    warn_about(&name, &file.report, ui);
+    warn_about(&name, &file, ui);
     Ok(file)
 }
 
-fn warn_about(name: &str, report: &ReadReport, ui: &Ui) {
+/// Names of what is in a file and in no stream: what its reader left out, and all attributes.
+pub fn not_kept(file: &MeshFile) -> Vec<String> {
+    let attributes = file.attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
+    let libraries = file.attributes.material_libraries.first().map(|_| "mtllib".to_owned());
+    file.report.ignored.iter().cloned().chain(attributes).chain(libraries).collect()
+}
+
+fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
+    let report = &file.report;
     if report.polygons_triangulated > 0 {
         let polygons = counted(report.polygons_triangulated, "polygon", "polygons");
         ui.warn(name, &format!("{polygons} cut into triangles"));
@@ -30,8 +55,13 @@ fn warn_about(name: &str, report: &ReadReport, ui: &Ui) {
         let faces = counted(report.faces_skipped, "face", "faces");
         ui.warn(name, &format!("{faces} of fewer than three corners left out"));
     }
-    if !report.ignored.is_empty() {
-        ui.warn(name, &format!("not kept: {}", report.ignored.join(", ")));
+    if report.points_left_out > 0 {
+        let points = counted(report.points_left_out, "point", "points");
+        ui.warn(name, &format!("{points} left out: above others, or not wanted"));
+    }
+    let not_kept = not_kept(file);
+    if !not_kept.is_empty() {
+        ui.warn(name, &format!("not kept: {}", not_kept.join(", ")));
     }
     if report.corners_welded > 0 {
         ui.detail(name, &format!("{} joined", counted(report.corners_welded, "corner", "corners")));

@@ -1,29 +1,54 @@
 //! What all readers do with vertices and faces once they have them.
 
 use super::{MeshFile, ReadError, ReadReport};
-use crate::mesh::TriMesh;
+use crate::mesh::{Attributes, NO_ROW, TriMesh};
 
 /// How many different names of ignored things a report lists: a damaged text has a new one on every line.
 const MAX_IGNORED_NAMES: usize = 64;
+
+/// How many indices of attributes there may be for each byte of a file, and how many in any file. Every
+/// triangle of a polygon repeats the rows of all its attributes, so few bytes can ask for much memory.
+const MAX_ROWS_PER_BYTE: usize = 16;
+const MIN_MAX_ROWS: usize = 1 << 20;
 
 /// A mesh and its report while they are read.
 #[derive(Default)]
 pub(super) struct MeshBuilder {
     pub positions: Vec<[f64; 3]>,
     pub triangles: Vec<[u32; 3]>,
+    /// Indices of faces and corners may end early: the triangles that follow have no row.
+    pub attributes: Attributes,
     pub report: ReadReport,
+    /// The most indices of attributes.
+    max_rows: usize,
 }
 
 impl MeshBuilder {
+    /// For a file of so many bytes.
+    pub fn for_file(num_bytes: usize) -> Self {
+        let max_rows = num_bytes.saturating_mul(MAX_ROWS_PER_BYTE).max(MIN_MAX_ROWS);
+        Self { max_rows, ..Self::default() }
+    }
+
+    /// Whether so many attributes may have an index for each of `num_elements`.
+    ///
+    /// # Errors
+    /// If that is out of proportion to the file.
+    pub fn check_rows(&self, num_attributes: usize, num_elements: usize) -> Result<(), ReadError> {
+        if num_attributes.saturating_mul(num_elements) <= self.max_rows {
+            return Ok(());
+        }
+        let message = format!("{num_attributes} attributes of {num_elements} triangles or corners");
+        Err(ReadError::TooLarge { message })
+    }
+
     /// Adds a face of any number of corners as the fan of its first one.
     pub fn push_polygon(&mut self, corners: &[u32]) {
-        match *corners {
-            [a, b, c] => self.triangles.push([a, b, c]),
-            [first, ref rest @ ..] if rest.len() > 2 => {
-                self.triangles.extend(rest.windows(2).map(|edge| [first, edge[0], edge[1]]));
-                self.report.polygons_triangulated += 1;
-            }
-            _ => self.report.faces_skipped += 1,
+        self.triangles.extend(fan(corners.len()).map(|triangle| triangle.map(|k| corners[k])));
+        match corners.len() {
+            0..3 => self.report.faces_skipped += 1,
+            3 => {}
+            _ => self.report.polygons_triangulated += 1,
         }
     }
 
@@ -34,9 +59,30 @@ impl MeshBuilder {
         self.triangles.extend(corners.windows(3).enumerate().map(turned));
     }
 
-    pub fn finish(self) -> Result<MeshFile, ReadError> {
-        Ok(MeshFile { mesh: TriMesh::new(self.positions, self.triangles)?, report: self.report })
+    pub fn finish(mut self) -> Result<MeshFile, ReadError> {
+        let num_indexed = self.attributes.list.iter().filter(|a| a.indices.is_some()).count();
+        self.check_rows(num_indexed, self.positions.len().max(3 * self.triangles.len()))?;
+        let mesh = TriMesh::new(self.positions, self.triangles)?;
+        for attribute in &mut self.attributes.list {
+            let num_rows = attribute.num_rows();
+            if let Some(indices) = &mut attribute.indices {
+                indices.resize(attribute.domain.num_elements(&mesh), NO_ROW);
+                if indices.len() == num_rows && indices.iter().enumerate().all(|(k, &row)| k == row as usize)
+                {
+                    attribute.indices = None;
+                }
+            }
+            // Readers count as they go: this is about more values than 32-bit indices can name.
+            let too_large = |error| ReadError::TooLarge { message: format!("{}: {error}", attribute.name) };
+            attribute.validate(&mesh).map_err(too_large)?;
+        }
+        Ok(MeshFile { mesh, attributes: self.attributes, report: self.report })
     }
+}
+
+/// The triangles of a polygon, as positions in its list of corners: the fan of the first corner.
+pub(super) fn fan(num_corners: usize) -> impl Iterator<Item = [usize; 3]> {
+    (1..num_corners.saturating_sub(1)).map(|k| [0, k, k + 1])
 }
 
 impl ReadReport {

@@ -11,6 +11,8 @@ pub enum Place {
     Line(usize),
     /// A byte of a (decompressed) binary file, from 0.
     Byte(usize),
+    /// An object of a structured file, such as `accessor` 3: what it is, and its number from 0.
+    Part(&'static str, usize),
 }
 
 impl fmt::Display for Place {
@@ -18,6 +20,7 @@ impl fmt::Display for Place {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
             Self::Byte(byte) => write!(f, "byte {byte}"),
+            Self::Part(what, index) => write!(f, "{what} {index}"),
         }
     }
 }
@@ -33,7 +36,7 @@ pub enum ReadError {
     #[error("cannot decompress: {0}")]
     Zstd(#[source] io::Error),
     /// The ending of the file's name is not that of a format we know.
-    #[error("unknown file ending; known are .obj, .ply and .stl, each also with .zst")]
+    #[error("unknown file ending; known are {}, each also with .zst", super::known_endings(|_| true))]
     UnknownEnding,
     /// The file breaks the rules of its format, ends early, or holds numbers no mesh can have.
     #[error("{place}: {message}")]
@@ -80,7 +83,10 @@ pub enum WriteError {
     #[error(transparent)]
     Io(#[from] io::Error),
     /// The ending of the file's name is not that of a format we know.
-    #[error("unknown file ending; known are .obj, .ply and .stl, each also with .zst")]
+    #[error(
+        "unknown file ending; known are {}, each also with .zst",
+        super::known_endings(super::Format::is_written)
+    )]
     UnknownEnding,
     /// The format cannot hold this mesh.
     #[error("{message}")]

@@ -1,7 +1,8 @@
-//! Mesh files: OBJ, PLY and STL, each also compressed with zstd (`.zst`).
+//! Mesh files: OBJ, PLY, STL, glTF (feature `gltf`) and terrain in LAS and LAZ (feature `las`), each also
+//! compressed with zstd (`.zst`).
 //!
-//! The file formats stay at the edge of the crate: a file becomes a [`TriMesh`] and a [`ReadReport`], a
-//! [`TriMesh`] becomes a file, and nothing else knows that files exist.
+//! The file formats stay at the edge of the crate: a file becomes a [`TriMesh`], its [`Attributes`] and a
+//! [`ReadReport`], these become a file, and nothing else knows that files exist.
 //!
 //! Input is not trusted. No input makes a reader panic, and counts declared in a file never decide how much
 //! is allocated: memory grows as the data that fills it is found, to a small multiple of the file's size.
@@ -16,15 +17,26 @@
 mod atomic;
 mod builder;
 mod error;
+#[cfg(feature = "gltf")]
+mod gltf;
+#[cfg(feature = "las")]
+mod las;
 mod obj;
 mod ply;
+#[cfg(feature = "gltf")]
+mod scene;
 mod stl;
 mod text;
+mod texture;
 
 pub use atomic::write_atomic;
 pub use error::{Place, ReadError, WriteError};
+#[cfg(feature = "las")]
+pub use las::TerrainOptions;
+#[cfg(feature = "gltf")]
+pub use scene::{Instance, Scene};
 
-use crate::mesh::TriMesh;
+use crate::mesh::{Attribute, Attributes, Domain, Semantic, TriMesh, Values};
 use std::{
     fs::File,
     io::{self, Read, Write},
@@ -47,9 +59,62 @@ pub enum Format {
     Ply,
     /// STL: triangles without shared vertices, float32.
     Stl,
+    /// glTF 2.0 in one binary file, float32.
+    #[cfg(feature = "gltf")]
+    Glb,
+    /// glTF 2.0 as text, with buffers inside or in other files, float32.
+    #[cfg(feature = "gltf")]
+    Gltf,
+    /// LAS: points, which are triangulated in the plane. Is read and not written.
+    #[cfg(feature = "las")]
+    Las,
+    /// LAZ: the same, compressed.
+    #[cfg(feature = "las")]
+    Laz,
+}
+
+/// `.obj, .ply, .stl`, of all formats that are wanted.
+fn known_endings(is_wanted: impl Fn(Format) -> bool) -> String {
+    let formats = Format::ALL.iter().copied().filter(|&format| is_wanted(format));
+    let endings: Vec<String> = formats.map(|format| format!(".{}", format.extension())).collect();
+    endings.join(", ")
 }
 
 impl Format {
+    /// All formats that this build knows.
+    pub const ALL: &[Self] = &[
+        Self::Obj,
+        Self::Ply,
+        Self::Stl,
+        #[cfg(feature = "gltf")]
+        Self::Glb,
+        #[cfg(feature = "gltf")]
+        Self::Gltf,
+        #[cfg(feature = "las")]
+        Self::Las,
+        #[cfg(feature = "las")]
+        Self::Laz,
+    ];
+
+    /// Whether meshes can be written in it; all can be read.
+    pub fn is_written(self) -> bool {
+        match self {
+            #[cfg(feature = "las")]
+            Self::Las | Self::Laz => false,
+            _ => true,
+        }
+    }
+
+    /// Whether such a file can be looked at in a terminal.
+    pub fn is_text(self) -> bool {
+        match self {
+            Self::Obj => true,
+            #[cfg(feature = "gltf")]
+            Self::Gltf => true,
+            _ => false,
+        }
+    }
+
     /// The format that the ending of `path` names, in any case; a further `.zst` is looked past.
     /// `None` if the ending is none of ours.
     pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
@@ -62,6 +127,14 @@ impl Format {
             Self::Obj => "obj",
             Self::Ply => "ply",
             Self::Stl => "stl",
+            #[cfg(feature = "gltf")]
+            Self::Glb => "glb",
+            #[cfg(feature = "gltf")]
+            Self::Gltf => "gltf",
+            #[cfg(feature = "las")]
+            Self::Las => "las",
+            #[cfg(feature = "las")]
+            Self::Laz => "laz",
         }
     }
 }
@@ -72,7 +145,7 @@ fn format_and_compression(path: &Path) -> Option<(Format, bool)> {
     let last = ending(path)?;
     let is_compressed = last == "zst";
     let named = if is_compressed { ending(path.file_stem()?.as_ref())? } else { last };
-    let format = [Format::Obj, Format::Ply, Format::Stl].into_iter().find(|f| f.extension() == named)?;
+    let format = *Format::ALL.iter().find(|f| f.extension() == named)?;
     Some((format, is_compressed))
 }
 
@@ -82,7 +155,9 @@ fn format_and_compression(path: &Path) -> Option<(Format, bool)> {
 pub struct MeshFile {
     /// Vertices in the order of the file, unused ones included; triangles in the order of the file.
     pub mesh: TriMesh,
-    /// What the mesh does not show.
+    /// Normals, texture coordinates, colours, materials and whatever else the file has; valid for the mesh.
+    pub attributes: Attributes,
+    /// What was changed or left out.
     pub report: ReadReport,
 }
 
@@ -94,22 +169,37 @@ pub struct ReadReport {
     pub polygons_triangulated: usize,
     /// Faces of fewer than three corners, left out.
     pub faces_skipped: usize,
-    /// STL only: corners that were joined with an earlier corner at exactly the same place.
+    /// STL and glTF: corners or vertices that were joined with an earlier one at exactly the same place.
     pub corners_welded: usize,
-    /// Names of what was in the file and is not in the mesh, each once, in order of appearance:
-    /// OBJ statements (`vt`), PLY properties (`vertex.red`) and elements (`edge`).
+    /// LAS only: points that are no vertices, because they lie above another, are not the last return, or were
+    /// thinned out.
+    pub points_left_out: usize,
+    /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
+    /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`).
     pub ignored: Vec<String>,
 }
 
 /// Reads a mesh file; the ending of `path` says which format (see [`Format::from_path`]).
 ///
-/// A well-formed file without vertices or faces is a mesh without vertices or faces, not an error.
+/// A well-formed file without vertices or faces is a mesh without vertices or faces, not an error. The meshes
+/// of a glTF scene become one, each in its place. Buffers of glTF in other files are read too, if they are in
+/// the folder of `path` or below.
 ///
 /// # Errors
 /// If the file cannot be read, its ending is unknown, it is larger than [`MAX_FILE_BYTES`], or it is damaged.
 /// The error names the place in the file and the cause; the caller knows the file's name and puts it in front.
 pub fn read(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
     let path = path.as_ref();
+    let (bytes, format) = read_file(path)?;
+    match format {
+        #[cfg(feature = "gltf")]
+        Format::Glb | Format::Gltf => gltf::read(&bytes, path.parent())?.merge(),
+        _ => read_bytes(&bytes, format),
+    }
+}
+
+/// The (uncompressed) bytes of a file, and what its ending says they are.
+fn read_file(path: &Path) -> Result<(Vec<u8>, Format), ReadError> {
     let (format, is_compressed) = format_and_compression(path).ok_or(ReadError::UnknownEnding)?;
     let file = File::open(path)?;
     let bytes = if is_compressed {
@@ -121,10 +211,48 @@ pub fn read(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
         let size_hint = file.metadata()?.len();
         read_limited(file, size_hint)?
     };
-    read_bytes(&bytes, format)
+    Ok((bytes, format))
 }
 
-/// Reads a mesh from the (uncompressed) bytes of a file.
+/// Reads a file of several meshes, each in its own coordinates; one of a format without scenes is one mesh in
+/// its place.
+///
+/// # Errors
+/// As [`read`].
+#[cfg(feature = "gltf")]
+pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene, ReadError> {
+    let path = path.as_ref();
+    let (bytes, format) = read_file(path)?;
+    match format {
+        Format::Glb | Format::Gltf => gltf::read(&bytes, path.parent()),
+        _ => Ok(read_bytes(&bytes, format)?.into()),
+    }
+}
+
+/// Reads a point cloud (`.las`, `.laz`, also `.zst`) and triangulates it in the plane.
+///
+/// # Errors
+/// As [`read`]; the ending of any other format is an unknown one here.
+#[cfg(feature = "las")]
+pub fn read_terrain(path: impl AsRef<Path>, options: &TerrainOptions) -> Result<MeshFile, ReadError> {
+    let (bytes, format) = read_file(path.as_ref())?;
+    match format {
+        Format::Las | Format::Laz => las::read(&bytes, options),
+        _ => Err(ReadError::UnknownEnding),
+    }
+}
+
+/// As [`read_terrain`], from the (uncompressed) bytes of a file.
+///
+/// # Errors
+/// As [`read`].
+#[cfg(feature = "las")]
+pub fn read_terrain_bytes(bytes: &[u8], options: &TerrainOptions) -> Result<MeshFile, ReadError> {
+    las::read(bytes, options)
+}
+
+/// Reads a mesh from the (uncompressed) bytes of a file. Nothing else is read: glTF must have its buffers
+/// inside.
 ///
 /// # Errors
 /// As [`read`].
@@ -133,6 +261,10 @@ pub fn read_bytes(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
         Format::Obj => obj::read(bytes),
         Format::Ply => ply::read(bytes),
         Format::Stl => stl::read(bytes),
+        #[cfg(feature = "gltf")]
+        Format::Glb | Format::Gltf => gltf::read(bytes, None)?.merge(),
+        #[cfg(feature = "las")]
+        Format::Las | Format::Laz => las::read(bytes, &TerrainOptions::default()),
     }
 }
 
@@ -148,6 +280,16 @@ fn read_limited(source: impl Read, size_hint: u64) -> Result<Vec<u8>, ReadError>
     Ok(bytes)
 }
 
+/// What a writer left out because the format has no place for it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct WriteReport {
+    /// Names of attributes that were left out.
+    pub ignored: Vec<String>,
+    /// Names of attributes that do not have a value everywhere, in a format that must: zeros were written.
+    pub zeroed: Vec<String>,
+}
+
 /// Writes a mesh file; the ending of `path` says which format, a further `.zst` compresses it.
 ///
 /// The file appears complete or not at all (see [`write_atomic`]).
@@ -155,18 +297,33 @@ fn read_limited(source: impl Read, size_hint: u64) -> Result<Vec<u8>, ReadError>
 /// # Errors
 /// If the file cannot be written, its ending is unknown, or the format cannot hold the mesh.
 pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
+    write_with_attributes(path, mesh, &Attributes::default()).map(drop)
+}
+
+/// As [`write()`], with those of the attributes that the format can hold.
+///
+/// # Errors
+/// As [`write()`], and if an attribute does not fit the mesh.
+pub fn write_with_attributes(
+    path: impl AsRef<Path>,
+    mesh: &TriMesh,
+    attributes: &Attributes,
+) -> Result<WriteReport, WriteError> {
     let path = path.as_ref();
-    let (format, is_compressed) = format_and_compression(path).ok_or(WriteError::UnknownEnding)?;
+    let known = format_and_compression(path).filter(|(format, _)| format.is_written());
+    let (format, is_compressed) = known.ok_or(WriteError::UnknownEnding)?;
+    let mut report = WriteReport::default();
     write_atomic(path, |out| {
         if is_compressed {
             let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
-            write_to(&mut compressor, mesh, format)?;
+            report = write_with_attributes_to(&mut compressor, mesh, attributes, format)?;
             compressor.finish()?;
-            Ok(())
         } else {
-            write_to(out, mesh, format)
+            report = write_with_attributes_to(out, mesh, attributes, format)?;
         }
-    })
+        Ok::<(), WriteError>(())
+    })?;
+    Ok(report)
 }
 
 /// Writes `mesh` in `format`, uncompressed. Writes are small: pass a buffered writer.
@@ -174,16 +331,55 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
 /// - OBJ: shortest decimal numbers that read back as the same float64.
 /// - PLY: binary little-endian; `float` if every coordinate is a float32, else `double`.
 /// - STL: binary; coordinates are rounded to float32 and vertices are no longer shared.
+/// - glTF: coordinates are rounded to float32.
 ///
 /// # Errors
 /// If `out` fails, or the format cannot hold the mesh.
-pub fn write_to(mut out: impl Write, mesh: &TriMesh, format: Format) -> Result<(), WriteError> {
-    match format {
-        Format::Obj => obj::write(&mut out, mesh)?,
-        Format::Ply => ply::write(&mut out, mesh)?,
-        Format::Stl => stl::write(&mut out, mesh)?,
+pub fn write_to(out: impl Write, mesh: &TriMesh, format: Format) -> Result<(), WriteError> {
+    write_with_attributes_to(out, mesh, &Attributes::default(), format).map(drop)
+}
+
+/// As [`write_to`], with those of the attributes that the format can hold.
+///
+/// - OBJ: normals, texture coordinates and a colour per vertex, one set each; names of materials, groups and
+///   objects.
+/// - PLY: whatever belongs to vertices and faces and is no name, in its type; attributes of corners if they
+///   have no seam, and one set of texture coordinates if they have.
+/// - STL: nothing.
+/// - glTF: normals, made unit vectors; texture coordinates, colours and what else vertices and corners have, in
+///   its type if glTF has it there, else as float32; names of materials. Vertices are split at seams.
+///
+/// # Errors
+/// As [`write_to`], and if an attribute does not fit the mesh.
+pub fn write_with_attributes_to(
+    mut out: impl Write,
+    mesh: &TriMesh,
+    attributes: &Attributes,
+    format: Format,
+) -> Result<WriteReport, WriteError> {
+    for attribute in &attributes.list {
+        let misfit = |error| format!("attribute {}: {error}", attribute.name);
+        let misfit = |error| WriteError::Unrepresentable { message: misfit(error) };
+        attribute.validate(mesh).map_err(misfit)?;
     }
-    Ok(())
+    match format {
+        Format::Obj => Ok(obj::write(&mut out, mesh, attributes)?),
+        Format::Ply => Ok(ply::write(&mut out, mesh, attributes)?),
+        Format::Stl => {
+            stl::write(&mut out, mesh)?;
+            let ignored = attributes.list.iter().map(|attribute| attribute.name.clone()).collect();
+            Ok(WriteReport { ignored, ..WriteReport::default() })
+        }
+        #[cfg(feature = "gltf")]
+        Format::Glb => gltf::write(&mut out, mesh, attributes, gltf::Container::Glb),
+        #[cfg(feature = "gltf")]
+        Format::Gltf => gltf::write(&mut out, mesh, attributes, gltf::Container::Text),
+        #[cfg(feature = "las")]
+        Format::Las | Format::Laz => {
+            let message = "point clouds are read and not written".to_owned();
+            Err(WriteError::Unrepresentable { message })
+        }
+    }
 }
 
 /// Writes `mesh` as PLY with a colour per vertex (properties `red`, `green` and `blue`), else as
@@ -191,14 +387,13 @@ pub fn write_to(mut out: impl Write, mesh: &TriMesh, format: Format) -> Result<(
 ///
 /// # Errors
 /// If `out` fails, or there is not one colour per vertex.
-pub fn write_ply_coloured(
-    mut out: impl Write,
-    mesh: &TriMesh,
-    colours: &[[u8; 3]],
-) -> Result<(), WriteError> {
+pub fn write_ply_coloured(out: impl Write, mesh: &TriMesh, colours: &[[u8; 3]]) -> Result<(), WriteError> {
     if colours.len() != mesh.num_vertices() {
         let message = format!("{} colours for {} vertices", colours.len(), mesh.num_vertices());
         return Err(WriteError::Unrepresentable { message });
     }
-    Ok(ply::write_coloured(&mut out, mesh, Some(colours))?)
+    let values = Values::U8(colours.as_flattened().to_vec());
+    let colour = Attribute::new("red green blue", Semantic::Color(0), Domain::Vertex, 3, values);
+    let attributes = Attributes { list: vec![colour], ..Attributes::default() };
+    write_with_attributes_to(out, mesh, &attributes, Format::Ply).map(drop)
 }

@@ -1,5 +1,6 @@
 //! Triangle meshes on flat arrays.
 
+mod attribute;
 mod build;
 pub(crate) mod ears;
 #[cfg(feature = "encoder")]
@@ -9,5 +10,8 @@ mod tri_mesh;
 #[cfg(any(feature = "encoder", feature = "metrics"))]
 pub(crate) mod triangle;
 
+pub use attribute::{
+    Attribute, AttributeError, Attributes, Domain, MAX_COMPONENTS, NO_ROW, ScalarType, Semantic, Values,
+};
 pub(crate) use surface::Surface;
 pub use tri_mesh::{MeshError, TriMesh};

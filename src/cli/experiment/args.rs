@@ -20,7 +20,7 @@ Example:
   lwc experiment dragon.ply terrain.ply --out results
   lwc experiment dragon.ply terrain.ply --out results --noise")]
 pub struct Experiment {
-    /// Meshes (.obj .ply .stl, each also as .zst).
+    /// Meshes (.obj .ply .stl .glb .gltf .las .laz, each also as .zst).
     #[arg(value_name = "MESH", required = true)]
     pub meshes: Vec<PathBuf>,
     /// Folder for the results; it is made if it is not there.

@@ -16,7 +16,7 @@ Examples:
   lwc render terrain.ply -o heat.png --up z --color-by harris3d --clip 2
   lwc render model.lwc -o levels.png --montage --levels 0,4,8,12 --shading flat")]
 pub struct Render {
-    /// Mesh (.obj .ply .stl, each also as .zst) or stream (.lwc).
+    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, each also as .zst) or stream (.lwc).
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
     /// Picture to write (.png), `-` for standard output.

@@ -5,23 +5,30 @@
 //! numbers in its errors and does not know continuation lines. So it is fed one statement at a time
 //! ([`StatementFeed`]): only `v` and `f`, reduced to positions, behind a first polygon that names every
 //! vertex in order. That polygon fixes the numbering, and the statement fed last is where an error is.
+//! What a corner has besides its position is gathered beside it ([`Gathered`]).
+
+mod gathered;
+mod statements;
+mod write;
+
+pub(super) use write::write;
 
 use super::{
     MeshFile, Place, ReadError,
     builder::MeshBuilder,
-    text::{Lines, parse_number, quoted, words},
+    text::{parse_number, quoted},
 };
-use crate::mesh::TriMesh;
+use gathered::Gathered;
+use statements::Statements;
 use std::{
-    borrow::Cow,
     fmt::Write as _,
-    io::{self, BufRead, Read, Write},
+    io::{self, BufRead, Read},
 };
 
 /// The longest word that is passed over as a statement we do not know; anything else is damage.
 const MAX_KEYWORD_BYTES: usize = 32;
 
-/// Reads an OBJ file. Points, lines, curves, normals, texture coordinates, groups and materials are ignored.
+/// Reads an OBJ file. Points, lines, curves and surfaces are ignored.
 pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
     let num_vertices = Statements::new(bytes).filter(|s| s.keyword() == b"v").count();
     if num_vertices >= u32::MAX as usize {
@@ -41,6 +48,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
     };
     let parsed = models.into_iter().next().map(|model| model.mesh).unwrap_or_default();
 
+    feed.gathered.check_references(bytes)?;
     let mut builder = feed.builder;
     builder.positions = parsed.positions.as_chunks::<3>().0.to_vec();
     if let Some(vertex) = builder.positions.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
@@ -48,88 +56,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
     }
     let only_triangles = parsed.face_arities.is_empty();
     let arities = if only_triangles { vec![3; parsed.indices.len() / 3] } else { parsed.face_arities };
-    let mut rest = &parsed.indices[..];
-    for (face, arity) in arities.into_iter().enumerate() {
+    // The first polygon is the numbering.
+    let (numbering, faces) = arities.split_at(usize::from(num_vertices > 0).min(arities.len()));
+    let num_numbered = numbering.iter().map(|&arity| arity as usize).sum();
+    let (_, mut rest) = parsed.indices.split_at(num_numbered);
+    for &arity in faces {
         let (corners, after) = rest.split_at(arity as usize);
         rest = after;
-        let is_numbering = face == 0 && num_vertices > 0;
-        if !is_numbering {
-            builder.push_polygon(corners);
-        }
+        builder.push_polygon(corners);
     }
+    builder.attributes = feed.gathered.into_attributes(faces, builder.triangles.len());
     builder.finish()
-}
-
-/// Writes vertices and faces, nothing else. The numbers are the shortest that read back exactly.
-pub(super) fn write(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
-    for position in mesh.positions() {
-        out.write_all(b"v")?;
-        for &c in position {
-            // Rust writes all the digits of a very large or small number unless asked for an exponent.
-            if c == 0.0 || (1e-5..1e16).contains(&c.abs()) {
-                write!(out, " {c}")?;
-            } else {
-                write!(out, " {c:e}")?;
-            }
-        }
-        out.write_all(b"\n")?;
-    }
-    for &[a, b, c] in mesh.triangles() {
-        writeln!(out, "f {} {} {}", u64::from(a) + 1, u64::from(b) + 1, u64::from(c) + 1)?;
-    }
-    Ok(())
-}
-
-/// One statement: a line, with those that continue it.
-struct Statement<'a> {
-    line: usize,
-    text: Cow<'a, [u8]>,
-}
-
-impl Statement<'_> {
-    fn words(&self) -> impl Iterator<Item = &[u8]> {
-        words(&self.text)
-    }
-
-    fn keyword(&self) -> &[u8] {
-        self.words().next().unwrap_or_default()
-    }
-}
-
-/// The statements of a file without comments. A backslash at the end of a line continues it.
-struct Statements<'a> {
-    lines: Lines<'a>,
-}
-
-impl<'a> Statements<'a> {
-    fn new(bytes: &'a [u8]) -> Self {
-        let byte_order_mark = b"\xef\xbb\xbf";
-        Self { lines: Lines::new(bytes.strip_prefix(byte_order_mark).unwrap_or(bytes)) }
-    }
-}
-
-impl<'a> Iterator for Statements<'a> {
-    type Item = Statement<'a>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let (line, first) = self.lines.next()?;
-        // A backslash in a comment is the end of a path more often than a continuation.
-        let without_comment = first.split(|&b| b == b'#').next().unwrap_or_default();
-        let Some(head) = without_comment.strip_suffix(b"\\") else {
-            return Some(Statement { line, text: Cow::Borrowed(without_comment) });
-        };
-        let mut text = head.to_vec();
-        for (_, next) in self.lines.by_ref() {
-            let next = next.split(|&b| b == b'#').next().unwrap_or_default();
-            let continued = next.strip_suffix(b"\\");
-            text.push(b' ');
-            text.extend_from_slice(continued.unwrap_or(next));
-            if continued.is_none() {
-                break;
-            }
-        }
-        Some(Statement { line, text: Cow::Owned(text) })
-    }
 }
 
 /// The file as `tobj` gets to see it, one statement at a time.
@@ -141,6 +78,7 @@ struct StatementFeed<'a> {
     num_consumed: usize,
     /// Takes notes of what is left out.
     builder: MeshBuilder,
+    gathered: Gathered,
     error: Option<ReadError>,
 }
 
@@ -160,7 +98,8 @@ impl<'a> StatementFeed<'a> {
             line: 0,
             current: numbering.into_bytes(),
             num_consumed: 0,
-            builder: MeshBuilder::default(),
+            builder: MeshBuilder::for_file(bytes.len()),
+            gathered: Gathered::default(),
             error: None,
         }
     }
@@ -172,7 +111,7 @@ impl<'a> StatementFeed<'a> {
         for statement in self.statements.by_ref() {
             let mut words = statement.words();
             let keyword = words.next().unwrap_or_default();
-            match keyword {
+            let gathered = match keyword {
                 b"" => continue,
                 b"v" => {
                     self.current.push(b'v');
@@ -180,30 +119,35 @@ impl<'a> StatementFeed<'a> {
                         self.current.push(b' ');
                         self.current.extend_from_slice(coordinate);
                     }
-                    // A weight of rational curves, or a colour.
-                    if words.next().is_some() {
-                        self.builder.report.ignore("v.more");
-                    }
+                    self.gathered.vertex(words, &mut self.builder.report)
                 }
                 b"f" => {
                     self.current.push(b'f');
-                    for corner in words {
+                    for corner in statement.words().skip(1) {
                         let position = corner.split(|&b| b == b'/').next().unwrap_or_default();
                         self.current.push(b' ');
                         // A corner without position, as `/1`, must not vanish: let it be refused.
                         self.current.extend_from_slice(if position.is_empty() { corner } else { position });
+                    }
+                    self.gathered.face(words)
+                }
+                b"vt" | b"vn" | b"usemtl" | b"g" | b"o" | b"s" | b"mtllib" => {
+                    match self.gathered.statement(&statement, &mut self.builder.report) {
+                        Ok(()) => continue,
+                        refused => refused,
                     }
                 }
                 _ if keyword.len() <= MAX_KEYWORD_BYTES && keyword.iter().all(u8::is_ascii_graphic) => {
                     self.builder.report.ignore(&String::from_utf8_lossy(keyword));
                     continue;
                 }
-                _ => {
-                    let message = format!("not an OBJ statement: {}", quoted(&statement.text));
-                    self.error = Some(ReadError::syntax(Place::Line(statement.line), message));
-                    self.current.clear();
-                    return;
-                }
+                _ => Err("not an OBJ statement"),
+            };
+            if let Err(cause) = gathered {
+                let message = format!("{cause}: {}", quoted(&statement.text));
+                self.error = Some(ReadError::syntax(Place::Line(statement.line), message));
+                self.current.clear();
+                return;
             }
             self.line = statement.line;
             self.current.push(b'\n');

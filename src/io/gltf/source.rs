@@ -1,0 +1,153 @@
+//! The bytes of a file: the container, and the buffers inside and beside it.
+
+use super::json::Document;
+use crate::io::{MAX_FILE_BYTES, Place, ReadError, text::quoted};
+use base64::Engine;
+use std::{
+    borrow::Cow,
+    fs::File,
+    io::Read,
+    path::{Component, Path},
+};
+
+/// Longer names are cut: many nodes may share one.
+const MAX_NAME_BYTES: usize = 1024;
+
+const MAGIC: &[u8] = b"glTF";
+const JSON_CHUNK: u32 = 0x4e4f_534a;
+const BINARY_CHUNK: u32 = 0x004e_4942;
+
+/// Takes apart a GLB container, or a bare text: the document and the bytes that come with it.
+pub(super) fn parse(bytes: &[u8]) -> Result<(Document, Option<&[u8]>), ReadError> {
+    if !bytes.starts_with(MAGIC) {
+        return Ok((parse_text(bytes, None)?, None));
+    }
+    let word = |at: usize| {
+        let raw = bytes.get(at..at + 4).and_then(|raw| raw.try_into().ok());
+        raw.map(u32::from_le_bytes).ok_or_else(|| cut(bytes.len()))
+    };
+    let bad = |at: usize, what: String| Err(ReadError::syntax(Place::Byte(at), what));
+    let (version, length) = (word(4)?, word(8)? as usize);
+    if version != 2 {
+        let message = format!("GLB version {version}");
+        return Err(ReadError::Unsupported { place: Place::Byte(4), message });
+    }
+    if length > bytes.len() {
+        return bad(8, format!("the file declares {length} bytes and has {}", bytes.len()));
+    }
+    let mut chunks = [None; 2];
+    let mut at = 12;
+    while at + 8 <= length && chunks[1].is_none() {
+        let (size, kind) = (word(at)? as usize, word(at + 4)?);
+        let Some(chunk) = bytes[..length].get(at + 8..(at + 8).saturating_add(size)) else {
+            return bad(at, format!("a chunk of {size} bytes is longer than the file"));
+        };
+        match (kind, chunks) {
+            (JSON_CHUNK, [None, _]) => chunks[0] = Some((at + 8, chunk)),
+            (BINARY_CHUNK, [Some(_), None]) => chunks[1] = Some((at + 8, chunk)),
+            (_, [None, _]) => return bad(at, "the first chunk is not JSON".to_owned()),
+            _ => {}
+        }
+        at += 8 + size;
+    }
+    let Some((start, text)) = chunks[0] else { return Err(cut(length)) };
+    Ok((parse_text(text, Some(start))?, chunks[1].map(|(_, binary)| binary)))
+}
+
+fn cut(length: usize) -> ReadError {
+    ReadError::syntax(Place::Byte(length), "the file ends before its JSON chunk")
+}
+
+/// Parses JSON that begins at a byte of a binary file, or is the file.
+fn parse_text(text: &[u8], start: Option<usize>) -> Result<Document, ReadError> {
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let mut document: Document = serde_json::from_slice(text).map_err(|error| {
+        let place = match start {
+            None => Place::Line(error.line().max(1)),
+            Some(start) => {
+                let lines = text.split_inclusive(|&b| b == b'\n');
+                let before: usize = lines.take(error.line().saturating_sub(1)).map(<[u8]>::len).sum();
+                Place::Byte(start + before + error.column().saturating_sub(1))
+            }
+        };
+        let message = error.to_string();
+        // The place is ours.
+        let message = message.split(" at line ").next().unwrap_or_default();
+        ReadError::syntax(place, format!("not a glTF document: {message}"))
+    })?;
+    let version = document.asset.min_version.as_ref().unwrap_or(&document.asset.version);
+    if version.split('.').next() != Some("2")
+        || document.asset.min_version.as_ref().is_some_and(|v| v != "2.0")
+    {
+        let message = format!("glTF version {}", quoted(version.as_bytes()));
+        return Err(ReadError::Unsupported { place: start.map_or(Place::Line(1), Place::Byte), message });
+    }
+    let meshes = document.meshes.iter_mut().map(|mesh| &mut mesh.name);
+    let nodes = document.nodes.iter_mut().map(|node| &mut node.name);
+    let materials = document.materials.iter_mut().map(|material| &mut material.name);
+    for name in meshes.chain(nodes).chain(materials) {
+        let fits = |&at: &usize| name.is_char_boundary(at);
+        name.truncate((0..=MAX_NAME_BYTES.min(name.len())).rev().find(fits).unwrap_or(0));
+    }
+    Ok(document)
+}
+
+/// Collects the buffers of a document: the binary chunk, data in the text, files in the folder `folder`.
+pub(super) fn load_buffers<'a>(
+    document: &Document,
+    binary: Option<&'a [u8]>,
+    folder: Option<&Path>,
+) -> Result<Vec<Cow<'a, [u8]>>, ReadError> {
+    let mut num_left = MAX_FILE_BYTES;
+    let mut buffers = Vec::new();
+    for (index, buffer) in document.buffers.iter().enumerate() {
+        let place = Place::Part("buffer", index);
+        let mut bytes: Cow<[u8]> = match (&buffer.uri, binary) {
+            (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
+            // Data of an extension; whoever needs it is told that it is not there.
+            (None, _) => Cow::Borrowed(&[]),
+            (Some(uri), _) if uri.starts_with("data:") => Cow::Owned(decode_data(uri, place)?),
+            (Some(uri), _) => Cow::Owned(read_file(uri, folder, buffer.byte_length.min(num_left), place)?),
+        };
+        num_left = num_left.saturating_sub(bytes.len() as u64);
+        if buffer.uri.is_some() && (bytes.len() as u64) < buffer.byte_length {
+            let message = format!("{} bytes of {}", bytes.len(), buffer.byte_length);
+            return Err(ReadError::syntax(place, message));
+        }
+        // A chunk is padded.
+        if let (Cow::Borrowed(all), Ok(length)) = (&mut bytes, usize::try_from(buffer.byte_length)) {
+            *all = &all[..length.min(all.len())];
+        }
+        buffers.push(bytes);
+    }
+    Ok(buffers)
+}
+
+fn decode_data(uri: &str, place: Place) -> Result<Vec<u8>, ReadError> {
+    let (_, data) = uri
+        .split_once(";base64,")
+        .ok_or_else(|| ReadError::syntax(place, "a data URI that is not base64"))?;
+    let decoded = base64::engine::general_purpose::STANDARD.decode(data);
+    decoded.map_err(|error| ReadError::syntax(place, format!("not base64: {error}")))
+}
+
+/// Reads a file that a document names. It must be in the folder of the document or below: a model from
+/// somewhere has no business elsewhere.
+fn read_file(uri: &str, folder: Option<&Path>, length: u64, place: Place) -> Result<Vec<u8>, ReadError> {
+    let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
+    let refuse = |why: &str| {
+        let message = format!("{} {why}", quoted(name.as_bytes()));
+        ReadError::Unsupported { place, message }
+    };
+    let folder = folder.ok_or_else(|| refuse("is another file, and there is no folder to look for it"))?;
+    let path = Path::new(&*name);
+    if name.contains(':') || !path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir))
+    {
+        return Err(refuse("is not a file in the folder of the model"));
+    }
+    let cannot =
+        |error: std::io::Error| ReadError::syntax(place, format!("{}: {error}", quoted(name.as_bytes())));
+    let mut bytes = Vec::new();
+    File::open(folder.join(path)).map_err(cannot)?.take(length).read_to_end(&mut bytes).map_err(cannot)?;
+    Ok(bytes)
+}

@@ -1,0 +1,385 @@
+//! Writing glTF 2.0: one mesh, one primitive for each material, one buffer.
+
+use crate::{
+    io::{WriteError, WriteReport, texture::oriented},
+    mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, TriMesh, Values},
+};
+use base64::Engine;
+use serde_json::{Value, json};
+use std::{collections::HashMap, io::Write};
+
+/// What holds document and buffer together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::io) enum Container {
+    /// Binary, `.glb`.
+    Glb,
+    /// Text with the buffer inside, `.gltf`.
+    Text,
+}
+
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+/// Writes `mesh` and those of its (valid) attributes that glTF can hold, and says which it cannot.
+/// Coordinates are rounded to float32.
+pub(in crate::io) fn write(
+    out: &mut impl Write,
+    mesh: &TriMesh,
+    attributes: &Attributes,
+    container: Container,
+) -> Result<WriteReport, WriteError> {
+    let unrepresentable = |message: String| WriteError::Unrepresentable { message };
+    if mesh.num_triangles() == 0 {
+        return Err(unrepresentable("glTF has no meshes without triangles".to_owned()));
+    }
+    if let Some(vertex) = mesh.positions().iter().position(|p| p.iter().any(|&c| (c as f32).is_infinite())) {
+        let message = format!("vertex {} is too far away for the float32 coordinates of glTF", vertex + 1);
+        return Err(unrepresentable(message));
+    }
+    let (columns, mut report) = columns(attributes);
+    let split = Split::new(mesh, &columns)?;
+    let mut writer = Writer::default();
+    let positions = split.sources.iter().flat_map(|&v| mesh.positions()[v as usize].map(|c| c as f32));
+    let positions: Vec<f32> = positions.collect();
+    let mut named = serde_json::Map::new();
+    named.insert("POSITION".to_owned(), writer.positions(&positions).into());
+    for (k, column) in columns.iter().enumerate() {
+        let rows: Vec<u32> = split.rows.iter().skip(k).step_by(columns.len()).copied().collect();
+        if rows.contains(&NO_ROW) {
+            report.zeroed.push(column.name.to_owned());
+        }
+        named.insert(column.gltf_name.clone(), writer.column(column, &rows).into());
+    }
+    let (primitives, materials) = writer.primitives(attributes, &split.triangles, named.into());
+
+    let Writer { mut buffer, views, accessors } = writer;
+    let mut document = json!({
+        "asset": { "version": "2.0", "generator": "lwc" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": primitives }],
+        "buffers": [{ "byteLength": buffer.len() }],
+        "bufferViews": views,
+        "accessors": accessors,
+    });
+    if !materials.is_empty() {
+        document["materials"] = materials.into();
+    }
+    if container == Container::Text {
+        let data = base64::engine::general_purpose::STANDARD.encode(&buffer);
+        document["buffers"][0]["uri"] = format!("data:application/octet-stream;base64,{data}").into();
+        out.write_all(document.to_string().as_bytes())?;
+        return Ok(report);
+    }
+    let mut text = document.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    buffer.resize(buffer.len().next_multiple_of(4), 0);
+    let length = u32::try_from(12 + 8 + text.len() + 8 + buffer.len());
+    let length = length.map_err(|_| unrepresentable("more than 4 GiB are too much for GLB".to_owned()))?;
+    out.write_all(b"glTF\x02\0\0\0")?;
+    out.write_all(&length.to_le_bytes())?;
+    out.write_all(&(text.len() as u32).to_le_bytes())?;
+    out.write_all(b"JSON")?;
+    out.write_all(&text)?;
+    out.write_all(&(buffer.len() as u32).to_le_bytes())?;
+    out.write_all(b"BIN\0")?;
+    out.write_all(&buffer)?;
+    Ok(report)
+}
+
+/// An attribute as it is written.
+struct Column<'a> {
+    attribute: &'a Attribute,
+    name: &'a str,
+    gltf_name: String,
+    /// The table in a type that glTF has.
+    values: Values,
+    is_normalized: bool,
+}
+
+/// Chooses names and types.
+fn columns(attributes: &Attributes) -> (Vec<Column<'_>>, WriteReport) {
+    let mut report = WriteReport::default();
+    let mut columns: Vec<Column> = Vec::new();
+    let mut num_sets = [0; 2];
+    for attribute in &attributes.list {
+        if first_material(attributes).is_some_and(|material| std::ptr::eq(attribute, material)) {
+            continue;
+        }
+        let (n, is_normal) = (attribute.num_components, attribute.semantic == Semantic::Normal);
+        let mut next_set = |k: usize, prefix: &str| {
+            num_sets[k] += 1;
+            format!("{prefix}_{}", num_sets[k] - 1)
+        };
+        let gltf_name = match attribute.semantic {
+            _ if attribute.values.names().is_some() || attribute.domain == Domain::Face => None,
+            Semantic::Normal if n == 3 => Some("NORMAL".to_owned()),
+            Semantic::TexCoord(_) if n == 2 => Some(next_set(0, "TEXCOORD")),
+            Semantic::Color(_) if n == 3 || n == 4 => Some(next_set(1, "COLOR")),
+            // They mean something together with others that are not here.
+            _ if is_dependent(&attribute.name) => None,
+            _ if n <= 4 => Some(custom_name(&attribute.name)),
+            _ => None,
+        };
+        let is_new = |name: &String| columns.iter().all(|column| column.gltf_name != *name);
+        let written =
+            if is_normal { Some(unit_normals(attribute)) } else { representable(&oriented(attribute, true)) };
+        match (gltf_name.filter(is_new), written) {
+            (Some(gltf_name), Some(values)) if attribute.num_rows() > 0 => columns.push(Column {
+                attribute,
+                name: &attribute.name,
+                gltf_name,
+                // A type that changed is a float.
+                is_normalized: attribute.is_normalized
+                    && values.scalar_type().is_some_and(ScalarType::is_integer),
+                values,
+            }),
+            _ => report.ignored.push(attribute.name.clone()),
+        }
+    }
+    report.ignored.extend(attributes.material_libraries.first().map(|_| "mtllib".to_owned()));
+    (columns, report)
+}
+
+fn first_material(attributes: &Attributes) -> Option<&Attribute> {
+    let is_material = |a: &&Attribute| {
+        a.semantic == Semantic::Material && a.domain == Domain::Face && a.values.names().is_some()
+    };
+    attributes.list.iter().find(is_material)
+}
+
+fn is_dependent(name: &str) -> bool {
+    name == "TANGENT" || name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")
+}
+
+fn custom_name(name: &str) -> String {
+    let clean = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
+    let name: String = name.chars().map(clean).collect();
+    if name.starts_with('_') { name } else { format!("_{name}") }
+}
+
+/// The table as it is if glTF has such values there, else as float32; `None` if that would lose something
+/// that is not only rounding, or is not finite.
+fn representable(attribute: &Attribute) -> Option<Values> {
+    let scalar = attribute.values.scalar_type()?;
+    let is_free = !matches!(attribute.semantic, Semantic::TexCoord(_) | Semantic::Color(_));
+    let is_kept = match scalar {
+        ScalarType::U8 | ScalarType::U16 => is_free || attribute.is_normalized,
+        ScalarType::I8 | ScalarType::I16 => is_free,
+        _ => false,
+    };
+    if is_kept {
+        return Some(attribute.values.clone());
+    }
+    let number = |k| attribute.number(k / attribute.num_components, k % attribute.num_components);
+    let floats = (0..attribute.values.len()).map(|k| {
+        let (number, float) = (number(k)?, number(k)? as f32);
+        let is_exact = !scalar.is_integer() || attribute.is_normalized || f64::from(float) == number;
+        Some(float).filter(|float| float.is_finite() && is_exact)
+    });
+    Some(Values::F32(floats.collect::<Option<Vec<f32>>>()?))
+}
+
+/// Directions of length 1, as glTF wants them; what has no direction points up.
+fn unit_normals(attribute: &Attribute) -> Values {
+    let unit = |row: usize| {
+        let normal = [0, 1, 2].map(|k| attribute.number(row, k).unwrap_or(0.0));
+        let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
+        if length > 0.0 && length.is_finite() { normal.map(|c| (c / length) as f32) } else { [0.0, 0.0, 1.0] }
+    };
+    Values::F32((0..attribute.num_rows()).flat_map(unit).collect())
+}
+
+/// Vertices as glTF has them: one for each combination of rows at a vertex.
+struct Split {
+    /// The vertex of the mesh that each is.
+    sources: Vec<u32>,
+    /// The rows of each, column by column.
+    rows: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Split {
+    fn new(mesh: &TriMesh, columns: &[Column]) -> Result<Self, WriteError> {
+        let mut split = Self { sources: Vec::new(), rows: Vec::new(), triangles: Vec::new() };
+        let mut known: HashMap<Vec<u32>, u32> = HashMap::new();
+        let mut is_used = vec![false; mesh.num_vertices()];
+        let mut key = Vec::new();
+        let mut place = |split: &mut Self, key: &Vec<u32>| {
+            if let Some(&vertex) = known.get(key) {
+                return vertex;
+            }
+            let vertex = split.sources.len() as u32;
+            known.insert(key.clone(), vertex);
+            split.sources.push(key[0]);
+            split.rows.extend(&key[1..]);
+            vertex
+        };
+        let has_corners = columns.iter().any(|column| column.attribute.domain == Domain::Corner);
+        let row = |row: Option<usize>| row.map_or(NO_ROW, |row| row as u32);
+        if !has_corners {
+            split.sources = (0..mesh.num_vertices() as u32).collect();
+            let rows =
+                |v: &u32| columns.iter().map(move |c| row(c.attribute.row(*v as usize))).collect::<Vec<_>>();
+            split.rows = split.sources.iter().flat_map(rows).collect();
+            split.triangles = mesh.triangles().to_vec();
+            return Ok(split);
+        }
+        for (t, triangle) in mesh.triangles().iter().enumerate() {
+            let mut corners = [0; 3];
+            for (c, corner) in corners.iter_mut().enumerate() {
+                key.clear();
+                key.push(triangle[c]);
+                key.extend(columns.iter().map(|column| row(column.attribute.row_at_corner(mesh, t, c))));
+                *corner = place(&mut split, &key);
+                is_used[triangle[c] as usize] = true;
+            }
+            split.triangles.push(corners);
+        }
+        for vertex in (0..mesh.num_vertices()).filter(|&vertex| !is_used[vertex]) {
+            key.clear();
+            key.push(vertex as u32);
+            key.extend(columns.iter().map(|column| match column.attribute.domain {
+                Domain::Vertex => row(column.attribute.row(vertex)),
+                _ => NO_ROW,
+            }));
+            place(&mut split, &key);
+        }
+        if split.sources.len() >= NO_ROW as usize {
+            let message = format!("{} vertices after splitting", split.sources.len());
+            return Err(WriteError::Unrepresentable { message });
+        }
+        Ok(split)
+    }
+}
+
+/// Document and buffer so far.
+#[derive(Default)]
+struct Writer {
+    buffer: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl Writer {
+    /// Begins a view at the end of the buffer. Its length is that of what follows.
+    fn begin(&mut self) -> usize {
+        self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
+        self.buffer.len()
+    }
+
+    fn end(&mut self, start: usize, target: u32, stride: Option<usize>) -> usize {
+        let mut view = json!({
+            "buffer": 0,
+            "byteOffset": start,
+            "byteLength": self.buffer.len() - start,
+            "target": target,
+        });
+        if let Some(stride) = stride {
+            view["byteStride"] = stride.into();
+        }
+        self.views.push(view);
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, accessor: Value) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    fn positions(&mut self, positions: &[f32]) -> usize {
+        let start = self.begin();
+        self.buffer.extend(positions.iter().flat_map(|c| c.to_le_bytes()));
+        let view = self.end(start, ARRAY_BUFFER, Some(12));
+        let bound = |f: fn(f32, f32) -> f32| -> [f64; 3] {
+            let (points, _) = positions.as_chunks::<3>();
+            std::array::from_fn(|axis| points.iter().map(|p| p[axis]).reduce(f).map_or(0.0, f64::from))
+        };
+        self.accessor(json!({
+            "bufferView": view,
+            "componentType": 5126,
+            "count": positions.len() / 3,
+            "type": "VEC3",
+            "min": bound(f32::min),
+            "max": bound(f32::max),
+        }))
+    }
+
+    /// Writes the rows of a column, for vertices without one zeros, or a direction upwards.
+    fn column(&mut self, column: &Column, rows: &[u32]) -> usize {
+        let scalar = column.values.scalar_type().unwrap_or(ScalarType::F32);
+        let (n, size) = (column.attribute.num_components, scalar.num_bytes());
+        let stride = (n * size).next_multiple_of(4);
+        let is_normal = column.attribute.semantic == Semantic::Normal;
+        let start = self.begin();
+        for &row in rows {
+            for k in 0..n {
+                let up = if is_normal && k == 2 { u64::from(1f32.to_bits()) } else { 0 };
+                let bits = if row == NO_ROW { None } else { column.values.bits(row as usize * n + k) };
+                self.buffer.extend(&bits.unwrap_or(up).to_le_bytes()[..size]);
+            }
+            self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
+        }
+        let view = self.end(start, ARRAY_BUFFER, Some(stride));
+        let code = match scalar {
+            ScalarType::I8 => 5120,
+            ScalarType::U8 => 5121,
+            ScalarType::I16 => 5122,
+            ScalarType::U16 => 5123,
+            _ => 5126,
+        };
+        let shape = ["SCALAR", "VEC2", "VEC3", "VEC4"][n - 1];
+        let mut accessor = json!({
+            "bufferView": view,
+            "componentType": code,
+            "count": rows.len(),
+            "type": shape,
+        });
+        if column.is_normalized {
+            accessor["normalized"] = true.into();
+        }
+        self.accessor(accessor)
+    }
+
+    /// One primitive for each material, in the order of the table, and one for triangles without. All
+    /// share the vertices.
+    fn primitives(
+        &mut self,
+        attributes: &Attributes,
+        triangles: &[[u32; 3]],
+        named: Value,
+    ) -> (Vec<Value>, Vec<Value>) {
+        let material = first_material(attributes);
+        let row = |t: usize| material.and_then(|material| material.row(t));
+        let mut order: Vec<(Option<usize>, usize)> = (0..triangles.len()).map(|t| (row(t), t)).collect();
+        order.sort_by_key(|&(row, _)| row);
+        let mut primitives = Vec::new();
+        let mut materials = Vec::new();
+        for group in order.chunk_by(|a, b| a.0 == b.0) {
+            let corners = group.iter().flat_map(|&(_, t)| triangles[t]);
+            // The largest number of either type is not a vertex.
+            let is_short = corners.clone().all(|corner| corner < u32::from(u16::MAX));
+            let start = self.begin();
+            if is_short {
+                self.buffer.extend(corners.flat_map(|corner| (corner as u16).to_le_bytes()));
+            } else {
+                self.buffer.extend(corners.flat_map(u32::to_le_bytes));
+            }
+            let view = self.end(start, ELEMENT_ARRAY_BUFFER, None);
+            let indices = self.accessor(json!({
+                "bufferView": view,
+                "componentType": if is_short { 5123 } else { 5125 },
+                "count": 3 * group.len(),
+                "type": "SCALAR",
+            }));
+            let mut primitive = json!({ "attributes": named, "indices": indices });
+            if let Some(name) = group[0].0.and_then(|row| material?.values.names()?.get(row)) {
+                primitive["material"] = materials.len().into();
+                materials.push(if name.is_empty() { json!({}) } else { json!({ "name": name }) });
+            }
+            primitives.push(primitive);
+        }
+        (primitives, materials)
+    }
+}

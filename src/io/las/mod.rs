@@ -1,0 +1,107 @@
+//! LAS and LAZ point clouds of terrain, triangulated in the plane.
+//!
+//! The vertices are points of the file at their coordinates, the triangles those of Delaunay seen from above,
+//! counter-clockwise from there. Overhangs are not for a surface like this: of several points above each
+//! other one remains.
+
+mod points;
+mod thin;
+
+use super::{MeshFile, Place, ReadError, builder::MeshBuilder};
+use crate::mesh::{Attribute, Domain, Semantic, Values};
+use points::{Cloud, Point};
+use spade::{DelaunayTriangulation, Point2, Triangulation};
+
+/// Which points of a cloud become vertices.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct TerrainOptions {
+    /// Only the last return of each pulse, which is the one that got furthest down. Default: all returns.
+    pub last_returns_only: bool,
+    /// At most one point in each square of this size in units of the file, the one nearest to its middle.
+    /// Positive. Default: no thinning.
+    pub cell_size: Option<f64>,
+    /// At most so many points, by squares as large as that takes. Default: all.
+    pub max_points: Option<usize>,
+}
+
+/// Axes of the plane may differ in scale by this factor; any real file has the same for both.
+const MAX_SCALE_RATIO: f64 = 1000.0;
+
+/// Reads and triangulates.
+pub(super) fn read(bytes: &[u8], options: &TerrainOptions) -> Result<MeshFile, ReadError> {
+    let Cloud { mut points, scale, offset, has_colour } = points::read(bytes)?;
+    let num_points = points.len();
+    if options.last_returns_only {
+        points.retain(|point| point.is_last_return);
+    }
+    thin::keep_lowest(&mut points);
+    if let Some(cell_size) = options.cell_size {
+        thin::keep_one_per_cell(&mut points, [cell_size / scale[0], cell_size / scale[1]]);
+    }
+    if let Some(max_points) = options.max_points {
+        thin::keep_at_most(&mut points, max_points, scale);
+    }
+    if points.len() >= u32::MAX as usize {
+        return Err(ReadError::TooLarge { message: format!("{} points", points.len()) });
+    }
+
+    let mut builder = MeshBuilder::for_file(bytes.len());
+    builder.report.points_left_out = num_points - points.len();
+    builder.triangles = triangulate(&points, scale)?;
+    let position = |point: &Point| [0, 1, 2].map(|k| f64::from(point.grid[k]) * scale[k] + offset[k]);
+    builder.positions = points.iter().map(position).collect();
+    builder.attributes.list = attributes(&points, has_colour);
+    builder.report.ignore("returns, angles, times and sources of points");
+    builder.finish()
+}
+
+fn attributes(points: &[Point], has_colour: bool) -> Vec<Attribute> {
+    let of_vertices =
+        |name: &str, semantic, n, values| Attribute::new(name, semantic, Domain::Vertex, n, values);
+    let classes = Values::U8(points.iter().map(|point| point.classification).collect());
+    let intensities = Values::U16(points.iter().map(|point| point.intensity).collect());
+    let mut list = vec![
+        of_vertices("classification", Semantic::Generic, 1, classes),
+        of_vertices("intensity", Semantic::Generic, 1, intensities),
+    ];
+    if has_colour {
+        let colours = Values::U16(points.iter().flat_map(|point| point.colour).collect());
+        let colour = of_vertices("red green blue", Semantic::Color(0), 3, colours);
+        list.push(Attribute { is_normalized: true, ..colour });
+    }
+    list
+}
+
+/// The triangles of Delaunay in the plane. The points are all at different places there.
+fn triangulate(points: &[Point], scale: [f64; 3]) -> Result<Vec<[u32; 3]>, ReadError> {
+    let place = Place::Byte(131);
+    let ratio = scale[0] / scale[1];
+    if !(1.0 / MAX_SCALE_RATIO..=MAX_SCALE_RATIO).contains(&ratio) {
+        let message = format!("scales of {} and {} in the plane", scale[0], scale[1]);
+        return Err(ReadError::Unsupported { place, message });
+    }
+    let lowest = |axis: usize| points.iter().map(|p| i64::from(p.grid[axis])).min().unwrap_or(0);
+    let (x0, y0) = (lowest(0), lowest(1));
+    // On the grid of the file the triangulation does not depend on rounding.
+    let in_plane = |p: &Point| {
+        let (x, y) = (i64::from(p.grid[0]) - x0, i64::from(p.grid[1]) - y0);
+        Point2::new(x as f64 * ratio, y as f64)
+    };
+    let plane = points.iter().map(in_plane).collect();
+    let bad = |what: String| ReadError::syntax(place, what);
+    let triangulation = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(plane)
+        .map_err(|error| bad(format!("cannot be triangulated: {error}")))?;
+    if triangulation.num_vertices() != points.len() {
+        return Err(bad("cannot be triangulated: points at one place".to_owned()));
+    }
+    let triangle = |face: [u32; 3]| {
+        // The order of faces and their first corners is that of the algorithm.
+        let first = (0..3).min_by_key(|&k| face[k]).unwrap_or(0);
+        [face[first], face[(first + 1) % 3], face[(first + 2) % 3]]
+    };
+    let faces = triangulation.inner_faces().map(|face| face.vertices().map(|v| v.fix().index() as u32));
+    let mut triangles: Vec<[u32; 3]> = faces.map(triangle).collect();
+    triangles.sort_unstable();
+    Ok(triangles)
+}

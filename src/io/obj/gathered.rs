@@ -1,0 +1,267 @@
+//! What vertices, faces and their corners have besides positions.
+
+use super::statements::{Statement, Statements};
+use crate::{
+    io::{
+        Place, ReadError, ReadReport,
+        builder::fan,
+        text::{parse_number, quoted},
+    },
+    mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Values},
+};
+use std::collections::HashMap;
+
+/// Rows of elements in their order. What is not set has none.
+#[derive(Default)]
+struct Rows(Vec<u32>);
+
+impl Rows {
+    /// Elements are set in order, each at most once.
+    fn set(&mut self, element: usize, row: u32) {
+        self.0.resize(element, NO_ROW);
+        self.0.push(row);
+    }
+
+    fn get(&self, element: usize) -> u32 {
+        self.0.get(element).copied().unwrap_or(NO_ROW)
+    }
+}
+
+/// Values that corners refer to: `vt` or `vn`.
+#[derive(Default)]
+struct Table {
+    values: Vec<[f64; 3]>,
+    num_components: usize,
+    rows: Rows,
+    /// The largest index from 1 that any corner has: values may follow their use.
+    highest: u64,
+}
+
+impl Table {
+    fn push<'a>(
+        &mut self,
+        words: impl Iterator<Item = &'a [u8]>,
+        least: usize,
+    ) -> Result<bool, &'static str> {
+        let mut value = [0.0; 3];
+        let mut num_words = 0;
+        for word in words {
+            if let Some(component) = value.get_mut(num_words) {
+                *component = number(word).ok_or("not a number")?;
+            }
+            num_words += 1;
+        }
+        if num_words < least {
+            return Err("too few numbers");
+        }
+        self.num_components = self.num_components.max(num_words.min(3));
+        self.values.push(value);
+        Ok(num_words > 3)
+    }
+
+    /// Notes what a corner has between its slashes.
+    fn refer(&mut self, corner: usize, index: &[u8]) -> Result<(), &'static str> {
+        if index.is_empty() {
+            return Ok(());
+        }
+        let index = std::str::from_utf8(index).ok().and_then(|index| index.parse::<i64>().ok());
+        let index = index.ok_or("an index is not a whole number")?;
+        let from_1 = if index < 0 { self.values.len() as i64 + 1 + index } else { index };
+        if from_1 <= 0 {
+            return Err("there is no such texture coordinate or normal");
+        }
+        self.highest = self.highest.max(from_1 as u64);
+        // Beyond 32 bits it does not exist, which is found at the end.
+        self.rows.set(corner, u32::try_from(from_1 - 1).unwrap_or(NO_ROW));
+        Ok(())
+    }
+
+    fn into_attribute(self, name: &str, semantic: Semantic, corners: &[u32]) -> Option<Attribute> {
+        if self.values.is_empty() {
+            return None;
+        }
+        let n = self.num_components;
+        let values = self.values.iter().flat_map(|value| &value[..n]).copied().collect();
+        let rows = corners.iter().map(|&corner| self.rows.get(corner as usize)).collect();
+        let attribute = Attribute::new(name, semantic, Domain::Corner, n, Values::F64(values));
+        Some(Attribute { indices: Some(rows), ..attribute })
+    }
+}
+
+/// Names that hold for all faces until the next: `usemtl`, `g`, `o` or `s`.
+#[derive(Default)]
+struct Names {
+    row_of: HashMap<String, u32>,
+    names: Vec<String>,
+    current: Option<u32>,
+    rows: Rows,
+}
+
+impl Names {
+    fn begin(&mut self, name: String) {
+        let next = self.names.len() as u32;
+        let row = *self.row_of.entry(name).or_insert_with_key(|name| {
+            self.names.push(name.clone());
+            next
+        });
+        self.current = Some(row);
+    }
+
+    fn face(&mut self, face: usize) {
+        if let Some(row) = self.current {
+            self.rows.set(face, row);
+        }
+    }
+
+    fn into_attribute(self, name: &str, semantic: Semantic, faces: &[u32]) -> Option<Attribute> {
+        if self.names.is_empty() {
+            return None;
+        }
+        let rows = faces.iter().map(|&face| self.rows.get(face as usize)).collect();
+        let attribute = Attribute::new(name, semantic, Domain::Face, 1, Values::Names(self.names));
+        Some(Attribute { indices: Some(rows), ..attribute })
+    }
+}
+
+/// Everything so far. Faces are counted as in the file, not as triangles.
+#[derive(Default)]
+pub(super) struct Gathered {
+    num_vertices: usize,
+    num_faces: usize,
+    num_corners: usize,
+    colours: Vec<f64>,
+    colour_rows: Rows,
+    texture: Table,
+    normals: Table,
+    materials: Names,
+    groups: Names,
+    objects: Names,
+    smoothing: Names,
+    material_libraries: Vec<String>,
+}
+
+impl Gathered {
+    /// Takes what a `v` statement has after the position: a colour, or a weight of rational curves.
+    pub fn vertex<'a>(
+        &mut self,
+        mut words: impl Iterator<Item = &'a [u8]>,
+        report: &mut ReadReport,
+    ) -> Result<(), &'static str> {
+        let vertex = self.num_vertices;
+        self.num_vertices += 1;
+        match [(); 4].map(|()| words.next()) {
+            [None, ..] => {}
+            [Some(r), Some(g), Some(b), None] => {
+                for word in [r, g, b] {
+                    self.colours.push(number(word).ok_or("a colour needs three numbers")?);
+                }
+                self.colour_rows.set(vertex, (self.colours.len() / 3 - 1) as u32);
+            }
+            _ => report.ignore("v.more"),
+        }
+        Ok(())
+    }
+
+    /// Takes the corners of an `f` statement.
+    pub fn face<'a>(&mut self, corners: impl Iterator<Item = &'a [u8]>) -> Result<(), &'static str> {
+        for corner in corners {
+            let mut indices = corner.split(|&byte| byte == b'/').skip(1);
+            self.texture.refer(self.num_corners, indices.next().unwrap_or_default())?;
+            self.normals.refer(self.num_corners, indices.next().unwrap_or_default())?;
+            if indices.next().is_some() {
+                return Err("a corner of more than three indices");
+            }
+            self.num_corners += 1;
+        }
+        for names in [&mut self.materials, &mut self.groups, &mut self.objects, &mut self.smoothing] {
+            names.face(self.num_faces);
+        }
+        self.num_faces += 1;
+        Ok(())
+    }
+
+    /// Takes any other statement that this module knows.
+    pub fn statement(&mut self, statement: &Statement, report: &mut ReadReport) -> Result<(), &'static str> {
+        let mut numbers = statement.words().skip(1);
+        match statement.keyword() {
+            b"vt" if self.texture.push(&mut numbers, 1)? => report.ignore("vt.more"),
+            b"vn" if self.normals.push(&mut numbers, 3)? => report.ignore("vn.more"),
+            b"usemtl" => self.materials.begin(statement.name()),
+            b"g" => self.groups.begin(statement.name()),
+            b"o" => self.objects.begin(statement.name()),
+            b"s" => self.smoothing.begin(statement.name()),
+            b"mtllib" => self.material_libraries.push(statement.name()),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Checks at the end that the values which corners refer to exist.
+    pub fn check_references(&self, bytes: &[u8]) -> Result<(), ReadError> {
+        if self.num_corners >= NO_ROW as usize {
+            return Err(ReadError::TooLarge { message: format!("{} corners", self.num_corners) });
+        }
+        for (k, what, table) in [(1, "texture coordinate", &self.texture), (2, "normal", &self.normals)] {
+            let num_values = table.values.len();
+            if num_values >= NO_ROW as usize {
+                return Err(ReadError::TooLarge { message: format!("{num_values} values of one kind") });
+            }
+            if table.highest <= num_values as u64 {
+                continue;
+            }
+            let is_beyond = |corner: &&[u8]| {
+                let index = corner.split(|&byte| byte == b'/').nth(k).unwrap_or_default();
+                let index = std::str::from_utf8(index).ok().and_then(|index| index.parse::<u64>().ok());
+                index.is_some_and(|index| index > num_values as u64)
+            };
+            for statement in Statements::new(bytes).filter(|statement| statement.keyword() == b"f") {
+                if let Some(corner) = statement.words().skip(1).find(is_beyond) {
+                    let message = format!("there is no such {what}, of {num_values}: {}", quoted(corner));
+                    return Err(ReadError::syntax(Place::Line(statement.line), message));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The attributes of all triangles, once each face with so many corners has become a fan.
+    pub fn into_attributes(self, num_corners: &[u32], num_triangles: usize) -> Attributes {
+        let has_corners = !(self.texture.values.is_empty() && self.normals.values.is_empty());
+        let tables = [&self.materials, &self.groups, &self.objects, &self.smoothing];
+        let has_names = tables.iter().any(|names| !names.names.is_empty());
+        // From triangles to faces of the file, and from corners to corners of the file.
+        let mut faces = Vec::with_capacity(if has_names { num_triangles } else { 0 });
+        let mut corners = Vec::with_capacity(if has_corners { 3 * num_triangles } else { 0 });
+        let mut first = 0;
+        for (face, &num) in num_corners.iter().enumerate() {
+            for triangle in fan(num as usize) {
+                if has_corners {
+                    corners.extend(triangle.map(|corner| first + corner as u32));
+                }
+                if has_names {
+                    faces.push(face as u32);
+                }
+            }
+            first = first.saturating_add(num);
+        }
+
+        let colour =
+            Attribute::new("v.rgb", Semantic::Color(0), Domain::Vertex, 3, Values::F64(self.colours));
+        let colour = Attribute { indices: Some(self.colour_rows.0), ..colour };
+        let list = [
+            Some(colour).filter(|colour| !colour.values.is_empty()),
+            self.texture.into_attribute("vt", Semantic::TexCoord(0), &corners),
+            self.normals.into_attribute("vn", Semantic::Normal, &corners),
+            self.materials.into_attribute("usemtl", Semantic::Material, &faces),
+            self.groups.into_attribute("g", Semantic::Group, &faces),
+            self.objects.into_attribute("o", Semantic::Object, &faces),
+            self.smoothing.into_attribute("s", Semantic::Generic, &faces),
+        ];
+        Attributes { list: list.into_iter().flatten().collect(), material_libraries: self.material_libraries }
+    }
+}
+
+/// NaN of either sign is written alike.
+fn number(word: &[u8]) -> Option<f64> {
+    parse_number(word).map(|number| if number.is_nan() { f64::NAN } else { number })
+}

@@ -1,0 +1,140 @@
+//! The header: which elements there are, and what each is made of.
+
+use super::body::Body;
+use crate::{
+    io::{
+        Place, ReadError,
+        text::{Lines, quoted, words},
+    },
+    mesh::ScalarType,
+};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+pub(super) struct Property {
+    pub name: String,
+    /// The type of the count before a list; `None` if this is a single value.
+    pub list_count: Option<ScalarType>,
+    pub scalar: ScalarType,
+}
+
+pub(super) struct Element {
+    pub name: String,
+    pub count: u64,
+    pub properties: Vec<Property>,
+    /// The line of its declaration.
+    pub place: Place,
+}
+
+pub(super) struct Header {
+    pub elements: Vec<Element>,
+}
+
+impl Header {
+    pub fn num_vertices(&self) -> Result<u32, ReadError> {
+        let mut counts = self.elements.iter().filter(|e| e.name == "vertex");
+        let count = counts.next().map_or(0, |element| element.count);
+        if let Some(second) = counts.next() {
+            return Err(ReadError::syntax(second.place, "a second element named vertex"));
+        }
+        match u32::try_from(count) {
+            Ok(count) if count < u32::MAX => Ok(count),
+            _ => Err(ReadError::TooLarge { message: format!("{count} vertices") }),
+        }
+    }
+}
+
+/// Reads the header; what follows it is the body.
+pub(super) fn read_header(bytes: &[u8]) -> Result<(Header, Body<'_>), ReadError> {
+    let mut lines = Lines::new(bytes);
+    match lines.next() {
+        Some((_, magic)) if magic.trim_ascii_end() == b"ply" => {}
+        _ => return Err(ReadError::syntax(Place::Line(1), "not a PLY file: it does not begin with `ply`")),
+    }
+    let mut encoding = None;
+    let mut elements: Vec<Element> = Vec::new();
+    while let Some((number, line)) = lines.next() {
+        let is_cut = lines.num_left() == 0 && !bytes.ends_with(b"\n") && !bytes.ends_with(b"\r");
+        if is_cut && line != b"end_header" {
+            break;
+        }
+        let place = Place::Line(number);
+        let bad = |cause: &str| ReadError::syntax(place, format!("{cause}: {}", quoted(line)));
+        let words: Vec<&[u8]> = words(line).take(6).collect();
+        match words[..] {
+            [] | [b"comment" | b"obj_info", ..] => {}
+            [b"format", name, version] => encoding = Some(parse_encoding(name, version, place)?),
+            [b"element", name, count] => {
+                let count = std::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
+                elements.push(Element {
+                    name: clean_name(name),
+                    count: count.ok_or_else(|| bad("the count of an element is not a number"))?,
+                    properties: Vec::new(),
+                    place,
+                });
+            }
+            [b"property", ref declaration @ ..] => {
+                let property = parse_property(declaration).ok_or_else(|| bad("not a property"))?;
+                let element = elements.last_mut().ok_or_else(|| bad("a property before any element"))?;
+                element.properties.push(property);
+            }
+            [b"end_header"] => {
+                let encoding =
+                    encoding.ok_or_else(|| ReadError::syntax(place, "the header names no format"))?;
+                return Ok((Header { elements }, Body::new(encoding, bytes, lines)));
+            }
+            _ => return Err(bad("not a line of a PLY header")),
+        }
+    }
+    Err(ReadError::syntax(Place::Line(lines.number()), "the file ends in the header"))
+}
+
+fn parse_encoding(name: &[u8], version: &[u8], place: Place) -> Result<Encoding, ReadError> {
+    let encoding = match name {
+        b"ascii" => Encoding::Ascii,
+        b"binary_little_endian" => Encoding::LittleEndian,
+        b"binary_big_endian" => Encoding::BigEndian,
+        _ => return Err(ReadError::syntax(place, format!("unknown format {}", quoted(name)))),
+    };
+    if version != b"1.0" {
+        return Err(ReadError::Unsupported { place, message: format!("PLY version {}", quoted(version)) });
+    }
+    Ok(encoding)
+}
+
+fn parse_property(declaration: &[&[u8]]) -> Option<Property> {
+    let (list_count, scalar, name) = match *declaration {
+        [b"list", count, scalar, name] => (Some(scalar_from_name(count)?), scalar, name),
+        [scalar, name] => (None, scalar, name),
+        _ => return None,
+    };
+    if list_count.is_some_and(|count| !count.is_integer()) {
+        return None;
+    }
+    let name = clean_name(name);
+    Some(Property { name, list_count, scalar: scalar_from_name(scalar)? })
+}
+
+fn scalar_from_name(name: &[u8]) -> Option<ScalarType> {
+    Some(match name {
+        b"char" | b"int8" => ScalarType::I8,
+        b"uchar" | b"uint8" => ScalarType::U8,
+        b"short" | b"int16" => ScalarType::I16,
+        b"ushort" | b"uint16" => ScalarType::U16,
+        b"int" | b"int32" => ScalarType::I32,
+        b"uint" | b"uint32" => ScalarType::U32,
+        b"float" | b"float32" => ScalarType::F32,
+        b"double" | b"float64" => ScalarType::F64,
+        _ => return None,
+    })
+}
+
+/// Names end up in messages: nothing in them may reach for the terminal.
+fn clean_name(name: &[u8]) -> String {
+    String::from_utf8_lossy(name).replace(char::is_control, "\u{fffd}")
+}

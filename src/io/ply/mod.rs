@@ -1,0 +1,310 @@
+//! Stanford PLY: text, binary little-endian and binary big-endian.
+//!
+//! The reader is our own. That of `ply-rs-bw` believes the count of an element without properties, which
+//! takes no bytes, and then fills memory with nothing; it allocates a list per face, and does not know the
+//! byte offset of an error. This one goes through the body once, value by value, and allocates for what it
+//! has found.
+//!
+//! Every property of vertices and faces that is a single value is kept under its name, in its type. Of the
+//! lists only `texcoord` of faces is kept, two numbers for each corner.
+
+mod body;
+mod columns;
+mod header;
+mod write;
+
+pub(super) use write::write;
+
+use super::{MeshFile, ReadError, builder::MeshBuilder, builder::fan};
+use crate::mesh::{Attribute, Domain, NO_ROW, Semantic, Values};
+use body::{Body, Fault};
+use columns::attributes_of;
+use header::{Element, Property, read_header};
+
+/// Reads a PLY file. Elements other than `vertex`, `face` and `tristrips` are skipped.
+pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
+    let (header, mut body) = read_header(bytes)?;
+    let num_vertices = header.num_vertices()?;
+    let mut builder = MeshBuilder::for_file(bytes.len());
+    let mut is_first = true;
+    for element in &header.elements {
+        match element.name.as_str() {
+            "vertex" => read_vertices(&mut body, element, &mut builder)?,
+            // The triangles of any other are bare.
+            "face" if std::mem::take(&mut is_first) => {
+                read_faces(&mut body, element, num_vertices, &mut builder)?;
+            }
+            "face" => read_bare_faces(&mut body, element, num_vertices, &mut builder)?,
+            "tristrips" => read_bare_faces(&mut body, element, num_vertices, &mut builder)?,
+            _ => {
+                builder.report.ignore(&element.name);
+                skip_element(&mut body, element)?;
+            }
+        }
+    }
+    builder.finish()
+}
+
+fn read_vertices(body: &mut Body, element: &Element, builder: &mut MeshBuilder) -> Result<(), ReadError> {
+    let axis_of = |p: &Property| match p.name.as_str() {
+        _ if p.list_count.is_some() => None,
+        "x" => Some(0),
+        "y" => Some(1),
+        "z" => Some(2),
+        _ => None,
+    };
+    let axes: Vec<Option<usize>> = element.properties.iter().map(axis_of).collect();
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        if element.count > 0 && !axes.contains(&Some(axis)) {
+            return Err(ReadError::syntax(element.place, format!("vertices without property {name}")));
+        }
+    }
+    let (mut attributes, owners) = attributes_of(element, Domain::Vertex, |p| axis_of(p).is_none());
+    ignore_others(element, builder, |k| axes[k].is_some() || owners[k].is_some());
+
+    let read_vertex = |body: &mut Body, attributes: &mut [Attribute]| {
+        body.begin_element()?;
+        let mut position = [0.0; 3];
+        for (k, property) in element.properties.iter().enumerate() {
+            match (axes[k], owners[k]) {
+                (Some(axis), _) => position[axis] = body.number(property.scalar)?,
+                (_, Some(owner)) => attributes[owner].values.push_bits(body.bits(property.scalar)?),
+                _ => body.skip(property)?,
+            }
+        }
+        Ok(position)
+    };
+    builder.positions.reserve_exact(body.room_for(element.count, 3));
+    for index in 0..element.count {
+        let position =
+            read_vertex(body, &mut attributes).map_err(|fault| body.error(fault, element, index))?;
+        if !position.iter().all(|c| c.is_finite()) {
+            let message =
+                format!("vertex {} of {} has a coordinate that is not finite", index + 1, element.count);
+            return Err(ReadError::syntax(body.place(), message));
+        }
+        builder.positions.push(position);
+    }
+    builder.attributes.list.append(&mut attributes);
+    Ok(())
+}
+
+/// The list of vertex indices among the properties of an element.
+fn corners_property(element: &Element) -> Result<usize, ReadError> {
+    let is_corners = |p: &Property| matches!(p.name.as_str(), "vertex_indices" | "vertex_index");
+    let found = element.properties.iter().position(|p| is_corners(p) && p.list_count.is_some());
+    match found {
+        Some(k) => Ok(k),
+        None if element.count == 0 => Ok(element.properties.len()),
+        None => {
+            let message = format!("element {} has no list of vertex_indices", element.name);
+            Err(ReadError::syntax(element.place, message))
+        }
+    }
+}
+
+/// Indices are float64 until they are checked.
+fn checked_index(
+    number: f64,
+    num_vertices: u32,
+    body: &Body,
+    element: &Element,
+    index: u64,
+) -> Result<u32, ReadError> {
+    if number >= 0.0 && number < f64::from(num_vertices) && number.fract() == 0.0 {
+        return Ok(number as u32);
+    }
+    let Element { name, count, .. } = element;
+    let message = format!(
+        "{name} {} of {count} has the vertex index {number}, but there are {num_vertices} vertices",
+        index + 1
+    );
+    Err(ReadError::syntax(body.place(), message))
+}
+
+fn read_faces(
+    body: &mut Body,
+    element: &Element,
+    num_vertices: u32,
+    builder: &mut MeshBuilder,
+) -> Result<(), ReadError> {
+    let corners_at = corners_property(element)?;
+    let is_wedge = |p: &Property| p.name == "texcoord" && p.list_count.is_some() && !p.scalar.is_integer();
+    let wedge_at = element.properties.iter().position(is_wedge).filter(|&k| k != corners_at);
+    let (attributes, owners) = attributes_of(element, Domain::Face, |_| true);
+    ignore_others(element, builder, |k| k == corners_at || wedge_at == Some(k) || owners[k].is_some());
+
+    // Triangles that came before have no row.
+    builder.check_rows(attributes.len(), builder.triangles.len())?;
+    let mut faces = Faces {
+        attributes,
+        wedge: wedge_at.map(|k| {
+            let values = Values::new(element.properties[k].scalar);
+            Attribute::new("texcoord", Semantic::TexCoord(0), Domain::Corner, 2, values)
+        }),
+        rows: vec![NO_ROW; builder.triangles.len()],
+        wedge_rows: vec![NO_ROW; 3 * builder.triangles.len()],
+        num_rows: 0,
+    };
+    let mut numbers = Vec::new();
+    let mut wedge_bits = Vec::new();
+    let read_face =
+        |body: &mut Body, attributes: &mut [Attribute], numbers: &mut Vec<f64>, bits: &mut Vec<u64>| {
+            body.begin_element()?;
+            for (k, property) in element.properties.iter().enumerate() {
+                match (property.list_count, owners[k]) {
+                    (_, Some(owner)) => attributes[owner].values.push_bits(body.bits(property.scalar)?),
+                    (Some(count), _) if k == corners_at => {
+                        for _ in 0..body.list_length(count)? {
+                            numbers.push(body.number(property.scalar)?);
+                        }
+                    }
+                    (Some(count), _) if wedge_at == Some(k) => {
+                        for _ in 0..body.list_length(count)? {
+                            bits.push(body.bits(property.scalar)?);
+                        }
+                    }
+                    _ => body.skip(property)?,
+                }
+            }
+            Ok::<(), Fault>(())
+        };
+    builder.triangles.reserve_exact(body.room_for(element.count, 4));
+    let mut corners = Vec::new();
+    for index in 0..element.count {
+        numbers.clear();
+        wedge_bits.clear();
+        corners.clear();
+        read_face(body, &mut faces.attributes, &mut numbers, &mut wedge_bits)
+            .map_err(|fault| body.error(fault, element, index))?;
+        for &number in &numbers {
+            corners.push(checked_index(number, num_vertices, body, element, index)?);
+        }
+        builder.push_polygon(&corners);
+        faces.end_polygon(corners.len(), &wedge_bits, builder)?;
+    }
+    builder.check_rows(faces.attributes.len(), builder.triangles.len())?;
+    faces.finish(builder);
+    Ok(())
+}
+
+/// The attributes of faces and their corners while polygons become triangles.
+struct Faces {
+    attributes: Vec<Attribute>,
+    /// Texture coordinates of corners.
+    wedge: Option<Attribute>,
+    /// The row that each triangle so far has in all of `attributes`.
+    rows: Vec<u32>,
+    /// The same of each corner, in `wedge`.
+    wedge_rows: Vec<u32>,
+    num_rows: usize,
+}
+
+impl Faces {
+    /// After the values of a polygon were added to `attributes`, and its triangles to `builder`.
+    fn end_polygon(
+        &mut self,
+        num_corners: usize,
+        wedge_bits: &[u64],
+        builder: &mut MeshBuilder,
+    ) -> Result<(), ReadError> {
+        let too_many = |_| ReadError::TooLarge { message: "more than 2^32 values".to_owned() };
+        if num_corners < 3 {
+            // The face was skipped.
+            for attribute in &mut self.attributes {
+                attribute.values.truncate(self.num_rows * attribute.num_components);
+            }
+            return Ok(());
+        }
+        if !self.attributes.is_empty() {
+            let row = u32::try_from(self.num_rows).map_err(too_many)?;
+            self.rows.resize(builder.triangles.len(), row);
+        }
+        self.num_rows += 1;
+        if let Some(wedge) = &mut self.wedge {
+            if wedge_bits.len() == 2 * num_corners {
+                let first = u32::try_from(wedge.num_rows()).map_err(too_many)?;
+                u32::try_from(wedge.num_rows() + num_corners).map_err(too_many)?;
+                wedge_bits.iter().for_each(|&bits| wedge.values.push_bits(bits));
+                let row = |corner: usize| first + corner as u32;
+                self.wedge_rows.extend(fan(num_corners).flatten().map(row));
+            } else {
+                if !wedge_bits.is_empty() {
+                    builder.report.ignore("face.texcoord of another length");
+                }
+                self.wedge_rows.resize(3 * builder.triangles.len(), NO_ROW);
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(self, builder: &mut MeshBuilder) {
+        let with_rows = |attribute| Attribute { indices: Some(self.rows.clone()), ..attribute };
+        builder.attributes.list.extend(self.attributes.into_iter().map(with_rows));
+        let with_rows = |wedge| Attribute { indices: Some(self.wedge_rows), ..wedge };
+        builder.attributes.list.extend(self.wedge.map(with_rows));
+    }
+}
+
+/// Reads polygons without their attributes, or triangle strips, in which -1 ends one and begins the next.
+fn read_bare_faces(
+    body: &mut Body,
+    element: &Element,
+    num_vertices: u32,
+    builder: &mut MeshBuilder,
+) -> Result<(), ReadError> {
+    let is_strips = element.name == "tristrips";
+    let corners_at = corners_property(element)?;
+    ignore_others(element, builder, |k| k == corners_at);
+    let read_corners = |body: &mut Body, numbers: &mut Vec<f64>| {
+        body.begin_element()?;
+        for (k, property) in element.properties.iter().enumerate() {
+            match property.list_count {
+                Some(count) if k == corners_at => {
+                    for _ in 0..body.list_length(count)? {
+                        numbers.push(body.number(property.scalar)?);
+                    }
+                }
+                _ => body.skip(property)?,
+            }
+        }
+        Ok(())
+    };
+    let mut numbers = Vec::new();
+    let mut corners = Vec::new();
+    for index in 0..element.count {
+        numbers.clear();
+        corners.clear();
+        read_corners(body, &mut numbers).map_err(|fault| body.error(fault, element, index))?;
+        for &number in &numbers {
+            if is_strips && number == -1.0 {
+                builder.push_strip(&corners);
+                corners.clear();
+            } else {
+                corners.push(checked_index(number, num_vertices, body, element, index)?);
+            }
+        }
+        if is_strips { builder.push_strip(&corners) } else { builder.push_polygon(&corners) }
+    }
+    Ok(())
+}
+
+fn skip_element(body: &mut Body, element: &Element) -> Result<(), ReadError> {
+    // Without properties it has no bytes and no line, whatever its count.
+    let count = if element.properties.is_empty() { 0 } else { element.count };
+    for index in 0..count {
+        let skipped =
+            body.begin_element().and_then(|()| element.properties.iter().try_for_each(|p| body.skip(p)));
+        skipped.map_err(|fault| body.error(fault, element, index))?;
+    }
+    Ok(())
+}
+
+/// Notes the properties that are not used, by their position in the element.
+fn ignore_others(element: &Element, builder: &mut MeshBuilder, is_used: impl Fn(usize) -> bool) {
+    for (k, property) in element.properties.iter().enumerate() {
+        if !is_used(k) {
+            builder.report.ignore(&format!("{}.{}", element.name, property.name));
+        }
+    }
+}

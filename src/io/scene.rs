@@ -1,0 +1,263 @@
+//! Files of several meshes.
+
+use super::{MeshFile, ReadError, ReadReport, builder::MeshBuilder};
+use crate::mesh::{Attribute, Domain, NO_ROW, Semantic, Values};
+use std::collections::HashMap;
+
+/// Several meshes, and where each of them is.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Scene {
+    /// Each mesh once, in its own coordinates.
+    pub meshes: Vec<MeshFile>,
+    /// A mesh may be in several places, or nowhere.
+    pub instances: Vec<Instance>,
+    /// What was left out of the scene; the meshes have their own reports.
+    pub report: ReadReport,
+    /// The size of the file, which the size of what is made of it must be in proportion to.
+    pub(super) num_bytes: usize,
+}
+
+/// A mesh in its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// Zero-based index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// The name of the node, or of its mesh; may be empty.
+    pub name: String,
+    /// Three rows of a 3 × 3 matrix and a translation, from the coordinates of the mesh to those of the scene.
+    pub transform: [[f64; 4]; 3],
+}
+
+impl From<MeshFile> for Scene {
+    fn from(file: MeshFile) -> Self {
+        let transform = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+        let instances = vec![Instance { mesh: 0, name: String::new(), transform }];
+        Self { meshes: vec![file], instances, ..Self::default() }
+    }
+}
+
+/// Vertices and triangles of all instances for each byte of the file, and in any file: a thousand trees are
+/// one tree in the file, a billion are an attack.
+const MAX_ELEMENTS_PER_BYTE: usize = 16;
+const MIN_MAX_ELEMENTS: usize = 1 << 20;
+
+impl Scene {
+    /// One mesh of all instances in their places. Each triangle of several instances says which it is of, as
+    /// attribute `node`. Normals turn with their surface; a mirrored instance keeps its outside.
+    ///
+    /// A single mesh that is where its coordinates say stays as it is, bit for bit.
+    ///
+    /// # Errors
+    /// If that is more than 32-bit indices can name, out of proportion to the file, or too far away for a
+    /// float64.
+    pub fn merge(mut self) -> Result<MeshFile, ReadError> {
+        let is_in_place = |instance: &Instance| {
+            let [[a, b, c, x], [d, e, f, y], [g, h, i, z]] = instance.transform;
+            [a, e, i] == [1.0; 3] && [b, c, d, f, g, h, x, y, z] == [0.0; 9]
+        };
+        if self.meshes.len() == 1 && self.instances.len() == 1 && is_in_place(&self.instances[0]) {
+            let mut file = self.meshes.remove(0);
+            self.report.ignored.iter().for_each(|name| file.report.ignore(name));
+            return Ok(file);
+        }
+        self.check_size()?;
+        let mut merger = Merger { builder: MeshBuilder::for_file(self.num_bytes), columns: Vec::new() };
+        merger.builder.report = self.report.clone();
+        let mut is_used = vec![false; self.meshes.len()];
+        for instance in &self.instances {
+            merger.add(&self.meshes[instance.mesh], instance, is_in_place(instance))?;
+            is_used[instance.mesh] = true;
+        }
+        if is_used.contains(&false) {
+            merger.builder.report.ignore("meshes outside the scene");
+        }
+        merger.finish(&self.instances, &self.meshes)
+    }
+
+    fn check_size(&self) -> Result<(), ReadError> {
+        let elements = |instance: &Instance| {
+            let file = &self.meshes[instance.mesh];
+            // Every attribute may need an index at each corner.
+            let per_triangle = 1 + 3 * (1 + file.attributes.list.len());
+            let in_tables: usize = file.attributes.list.iter().map(|attribute| attribute.values.len()).sum();
+            file.mesh.num_vertices() + per_triangle * file.mesh.num_triangles() + in_tables
+        };
+        let total = self.instances.iter().fold(0usize, |sum, i| sum.saturating_add(elements(i)));
+        if total <= self.num_bytes.saturating_mul(MAX_ELEMENTS_PER_BYTE).max(MIN_MAX_ELEMENTS) {
+            return Ok(());
+        }
+        let message = format!("{} instances out of proportion to the file", self.instances.len());
+        Err(ReadError::TooLarge { message })
+    }
+}
+
+/// All instances so far.
+struct Merger {
+    builder: MeshBuilder,
+    columns: Vec<Column>,
+}
+
+/// An attribute of all instances, by corners or triangles: an instance may have a seam where another has none.
+struct Column {
+    attribute: Attribute,
+    rows: Vec<u32>,
+    /// Of names, each of which is there once.
+    row_of: HashMap<String, u32>,
+}
+
+impl Column {
+    /// Adds a table; gives the row in this one that each of its rows is now.
+    fn append(&mut self, other: &Attribute) -> Vec<u32> {
+        let first = self.attribute.num_rows() as u32;
+        let Values::Names(known) = &mut self.attribute.values else {
+            self.attribute.values.append(other.values.clone());
+            return (0..other.num_rows() as u32).map(|row| first + row).collect();
+        };
+        let mut row = |name: &String| {
+            *self.row_of.entry(name.clone()).or_insert_with(|| {
+                known.push(name.clone());
+                known.len() as u32 - 1
+            })
+        };
+        other.values.names().unwrap_or_default().iter().map(&mut row).collect()
+    }
+}
+
+impl Merger {
+    fn add(&mut self, file: &MeshFile, instance: &Instance, is_in_place: bool) -> Result<(), ReadError> {
+        let MeshFile { mesh, attributes, report } = file;
+        let builder = &mut self.builder;
+        report.ignored.iter().for_each(|name| builder.report.ignore(name));
+        builder.report.polygons_triangulated += report.polygons_triangulated;
+        builder.report.faces_skipped += report.faces_skipped;
+        builder.report.corners_welded += report.corners_welded;
+        let transform = &instance.transform;
+        let is_mirrored = determinant(transform) < 0.0;
+        let first_vertex = u32::try_from(builder.positions.len()).unwrap_or(NO_ROW);
+        let num_before = builder.triangles.len();
+        let moved = |p: &[f64; 3]| {
+            if is_in_place {
+                return *p;
+            }
+            transform.map(|[a, b, c, d]| a * p[0] + b * p[1] + c * p[2] + d)
+        };
+        builder.positions.extend(mesh.positions().iter().map(moved));
+        if builder.positions.len() >= NO_ROW as usize {
+            return Err(ReadError::TooLarge { message: format!("{} vertices", builder.positions.len()) });
+        }
+        if builder.positions[first_vertex as usize..].iter().flatten().any(|c| !c.is_finite()) {
+            return Err(ReadError::TooLarge { message: format!("coordinates of node `{}`", instance.name) });
+        }
+        // Corner k of a triangle is corner `corners[k]` of the triangle before.
+        let corners = if is_mirrored { [0, 2, 1] } else { [0, 1, 2] };
+        let triangle = |t: &[u32; 3]| corners.map(|corner| first_vertex + t[corner]);
+        builder.triangles.extend(mesh.triangles().iter().map(triangle));
+
+        for attribute in &attributes.list {
+            let turned;
+            let is_direction = attribute.semantic == Semantic::Normal || attribute.name == "TANGENT";
+            let attribute = match attribute.semantic {
+                Semantic::Normal if !is_in_place => {
+                    turned = turned_normals(attribute, transform);
+                    &turned
+                }
+                _ if is_direction && !is_in_place => {
+                    self.builder.report.ignore(&attribute.name);
+                    continue;
+                }
+                _ => attribute,
+            };
+            self.add_attribute(file, attribute, num_before, corners)?;
+        }
+        Ok(())
+    }
+
+    fn add_attribute(
+        &mut self,
+        file: &MeshFile,
+        attribute: &Attribute,
+        num_before: usize,
+        corners: [usize; 3],
+    ) -> Result<(), ReadError> {
+        let domain = if attribute.domain == Domain::Face { Domain::Face } else { Domain::Corner };
+        let is_like = |column: &Column| {
+            let known = &column.attribute;
+            known.name == attribute.name
+                && known.semantic == attribute.semantic
+                && known.domain == domain
+                && known.num_components == attribute.num_components
+                && known.is_normalized == attribute.is_normalized
+                && known.values.scalar_type() == attribute.values.scalar_type()
+        };
+        let known = self.columns.iter().position(is_like).unwrap_or_else(|| {
+            let empty = attribute.values.emptied();
+            let attribute = Attribute { domain, values: empty, indices: None, ..attribute.clone() };
+            self.columns.push(Column { attribute, rows: Vec::new(), row_of: HashMap::new() });
+            self.columns.len() - 1
+        });
+        self.builder.check_rows(self.columns.len(), 3 * self.builder.triangles.len())?;
+        let column = &mut self.columns[known];
+        let num_rows = column.attribute.num_rows() + attribute.num_rows();
+        if num_rows >= NO_ROW as usize {
+            return Err(ReadError::TooLarge { message: format!("{num_rows} values") });
+        }
+        let row_of = column.append(attribute);
+        let rows = &mut column.rows;
+        let per_triangle = if domain == Domain::Face { 1 } else { 3 };
+        rows.resize(per_triangle * num_before, NO_ROW);
+        for t in 0..file.mesh.num_triangles() {
+            rows.extend(corners[..per_triangle].iter().map(|&corner| {
+                let row = attribute.row_at_corner(&file.mesh, t, corner);
+                row.map_or(NO_ROW, |row| row_of[row])
+            }));
+        }
+        Ok(())
+    }
+
+    fn finish(mut self, instances: &[Instance], meshes: &[MeshFile]) -> Result<MeshFile, ReadError> {
+        for Column { attribute, rows, .. } in self.columns {
+            self.builder.attributes.list.push(Attribute { indices: Some(rows), ..attribute });
+        }
+        if instances.len() > 1 {
+            let names = instances.iter().map(|instance| instance.name.clone()).collect();
+            let num_triangles = |instance: &Instance| meshes[instance.mesh].mesh.num_triangles();
+            let rows = |(k, i)| std::iter::repeat_n(k as u32, num_triangles(i));
+            let rows = instances.iter().enumerate().flat_map(rows).collect();
+            let node = Attribute::new("node", Semantic::Object, Domain::Face, 1, Values::Names(names));
+            self.builder.attributes.list.push(Attribute { indices: Some(rows), ..node });
+        }
+        let mut file = self.builder.finish()?;
+        // Where no instance has a seam, corners are more than is needed.
+        for attribute in &mut file.attributes.list {
+            if let Some(smooth) = attribute.without_seams(&file.mesh) {
+                *attribute = smooth;
+            }
+        }
+        Ok(file)
+    }
+}
+
+fn determinant([[a, b, c, _], [d, e, f, _], [g, h, i, _]]: &[[f64; 4]; 3]) -> f64 {
+    a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+}
+
+/// Normals as float32, turned by the transpose of the inverse: its rows, but for their length, are the cross
+/// products of those of the matrix.
+fn turned_normals(attribute: &Attribute, transform: &[[f64; 4]; 3]) -> Attribute {
+    let cross = |u: &[f64; 4], v: &[f64; 4]| {
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    };
+    let [x, y, z] = transform;
+    let sign = determinant(transform).signum();
+    let rows = [cross(y, z), cross(z, x), cross(x, y)].map(|row| row.map(|entry| sign * entry));
+    let mut values = Vec::with_capacity(attribute.values.len());
+    for row in 0..attribute.num_rows() {
+        let normal = [0, 1, 2].map(|k| attribute.number(row, k).unwrap_or(0.0));
+        let turned = rows.map(|[a, b, c]| a * normal[0] + b * normal[1] + c * normal[2]);
+        let length = turned.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let scale = if length > 0.0 && length.is_finite() { 1.0 / length } else { 1.0 };
+        values.extend(turned.map(|c| (c * scale) as f32));
+    }
+    Attribute { values: Values::F32(values), is_normalized: false, ..attribute.clone() }
+}

@@ -1,0 +1,357 @@
+//! What a mesh carries besides positions and triangles.
+//!
+//! An [`Attribute`] is a table of values and, unless every element has its own row, an array that says which
+//! row an element has. A seam is two corners at one vertex with different rows: it does not split the vertex.
+//!
+//! ```
+//! use lwc::TriMesh;
+//! use lwc::mesh::{Attribute, Domain, NO_ROW, Semantic, Values};
+//!
+//! let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+//! let mesh = TriMesh::new(square.to_vec(), vec![[0, 1, 2], [0, 2, 3]])?;
+//! // Five texture coordinates for four vertices, none at the last corner.
+//! let uv = Attribute {
+//!     indices: Some(vec![0, 1, 2, 3, 4, NO_ROW]),
+//!     ..Attribute::new(
+//!         "vt",
+//!         Semantic::TexCoord(0),
+//!         Domain::Corner,
+//!         2,
+//!         Values::F32(vec![0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.5, 0.5, 0.9, 0.9]),
+//!     )
+//! };
+//! uv.validate(&mesh)?;
+//! assert_eq!((uv.row(3), uv.row(5)), (Some(3), None));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod values;
+
+pub use values::{ScalarType, Values};
+
+use super::TriMesh;
+use std::fmt;
+use thiserror::Error;
+
+/// In [`Attribute::indices`]: this element has no value.
+pub const NO_ROW: u32 = u32::MAX;
+
+/// The most components that a row may have, those of a 4 × 4 matrix.
+pub const MAX_COMPONENTS: usize = 16;
+
+/// What the values mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Semantic {
+    /// Direction away from the surface, three components.
+    Normal,
+    /// Place in a texture, this set of several.
+    TexCoord(u32),
+    /// Red, green, blue and perhaps opacity, this set of several.
+    Color(u32),
+    /// Which material: a name, or a number.
+    Material,
+    /// Which group of faces (OBJ `g`).
+    Group,
+    /// Which object (OBJ `o`) or part of a scene (a node of glTF).
+    Object,
+    /// Anything else; the name says what.
+    Generic,
+}
+
+/// What has a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Domain {
+    /// Every vertex.
+    Vertex,
+    /// Every corner of a triangle; corner `c` of triangle `t` is element `3 t + c`.
+    Corner,
+    /// Every triangle.
+    Face,
+}
+
+impl Domain {
+    /// How many elements `mesh` has.
+    pub fn num_elements(self, mesh: &TriMesh) -> usize {
+        match self {
+            Self::Vertex => mesh.num_vertices(),
+            Self::Corner => 3 * mesh.num_triangles(),
+            Self::Face => mesh.num_triangles(),
+        }
+    }
+}
+
+impl fmt::Display for Domain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Vertex => "vertices",
+            Self::Corner => "corners",
+            Self::Face => "triangles",
+        })
+    }
+}
+
+/// A table of values, and which element has which row of it.
+///
+/// Nothing holds these fields together but [`Self::validate`]: who makes an attribute, or changes the mesh
+/// under it, calls that before somebody else uses both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attribute {
+    /// What the file calls it: an OBJ statement (`vt`), an attribute of glTF (`TEXCOORD_0`), the names of PLY
+    /// properties with a space between (`nx ny nz`), a field of LAS (`classification`).
+    pub name: String,
+    /// What the values mean.
+    pub semantic: Semantic,
+    /// What has a value.
+    pub domain: Domain,
+    /// Values of a row, 1 to [`MAX_COMPONENTS`]; 1 for names.
+    pub num_components: usize,
+    /// Whether integers stand for fractions: [`ScalarType::one`] is 1.
+    pub is_normalized: bool,
+    /// The table, row by row.
+    pub values: Values,
+    /// The row of each element, or [`NO_ROW`]. `None`: element k has row k.
+    pub indices: Option<Vec<u32>>,
+}
+
+/// Why an attribute does not fit a mesh, or itself.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AttributeError {
+    /// No components, too many, or names of several.
+    #[error("rows of {num_components} components")]
+    Components {
+        /// How many there are.
+        num_components: usize,
+    },
+    /// The last row is incomplete.
+    #[error("{num_values} values are no whole number of rows of {num_components}")]
+    Ragged {
+        /// Values in the table.
+        num_values: usize,
+        /// Values of a row.
+        num_components: usize,
+    },
+    /// There is not one row, or index, for each element.
+    #[error("{found} rows or indices for {expected} {domain}")]
+    Count {
+        /// What should have one each.
+        domain: Domain,
+        /// How many of these the mesh has.
+        expected: usize,
+        /// How many rows or indices there are.
+        found: usize,
+    },
+    /// An index names a row that does not exist.
+    #[error("element {element} has row {index}, but there are {num_rows}")]
+    IndexOutOfRange {
+        /// Zero-based element.
+        element: usize,
+        /// The index it holds.
+        index: u32,
+        /// Rows of the table.
+        num_rows: usize,
+    },
+}
+
+impl Attribute {
+    /// An attribute whose element k has row k, not normalised. Not validated.
+    pub fn new(
+        name: impl Into<String>,
+        semantic: Semantic,
+        domain: Domain,
+        num_components: usize,
+        values: Values,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            semantic,
+            domain,
+            num_components,
+            is_normalized: false,
+            values,
+            indices: None,
+        }
+    }
+
+    /// Rows of the table.
+    pub fn num_rows(&self) -> usize {
+        self.values.len() / self.num_components.max(1)
+    }
+
+    /// The row of an element, `None` if it has none.
+    pub fn row(&self, element: usize) -> Option<usize> {
+        match &self.indices {
+            None => Some(element).filter(|&row| row < self.num_rows()),
+            Some(indices) => indices.get(element).filter(|&&row| row != NO_ROW).map(|&row| row as usize),
+        }
+    }
+
+    /// The row at a corner of a triangle of `mesh`, whatever the domain.
+    pub fn row_at_corner(&self, mesh: &TriMesh, triangle: usize, corner: usize) -> Option<usize> {
+        match self.domain {
+            Domain::Vertex => self.row(*mesh.triangles().get(triangle)?.get(corner)? as usize),
+            Domain::Corner => self.row(3 * triangle + corner),
+            Domain::Face => self.row(triangle),
+        }
+    }
+
+    /// Component `k` of a row as a number: a fraction if the attribute is normalised. `None` for names and
+    /// beyond the end.
+    pub fn number(&self, row: usize, k: usize) -> Option<f64> {
+        let value = self.values.number(row * self.num_components + k)?;
+        let one = self.values.scalar_type()?.one();
+        // The most negative integer stands for -1 as well.
+        Some(if self.is_normalized { (value / one).max(-1.0) } else { value })
+    }
+
+    /// The same attribute on the vertices, if all corners at each vertex have equal values: an attribute of
+    /// corners without a seam. `None` otherwise, and for other domains.
+    pub fn without_seams(&self, mesh: &TriMesh) -> Option<Self> {
+        if self.domain != Domain::Corner {
+            return None;
+        }
+        let mut rows = vec![None; mesh.num_vertices()];
+        for (t, triangle) in mesh.triangles().iter().enumerate() {
+            for (c, &vertex) in triangle.iter().enumerate() {
+                let row = self.row(3 * t + c);
+                match rows[vertex as usize] {
+                    None => rows[vertex as usize] = Some(row),
+                    Some(first) if first == row || self.rows_are_equal(first?, row?) => {}
+                    Some(_) => return None,
+                }
+            }
+        }
+        let index = |row: Option<Option<usize>>| row.flatten().map_or(NO_ROW, |row| row as u32);
+        let indices = Some(rows.into_iter().map(index).collect());
+        Some(Self { domain: Domain::Vertex, indices, ..self.clone() })
+    }
+
+    fn rows_are_equal(&self, a: usize, b: usize) -> bool {
+        let n = self.num_components;
+        match &self.values {
+            Values::Names(names) => names.get(a) == names.get(b),
+            values => (0..n).all(|k| values.bits(a * n + k) == values.bits(b * n + k)),
+        }
+    }
+
+    /// Checks that the table is whole and every element of `mesh` has a row of it or none.
+    ///
+    /// # Errors
+    /// The first of these rules that is broken, in the order of the variants of [`AttributeError`].
+    pub fn validate(&self, mesh: &TriMesh) -> Result<(), AttributeError> {
+        let (num_values, num_components) = (self.values.len(), self.num_components);
+        let most = if self.values.names().is_some() { 1 } else { MAX_COMPONENTS };
+        if num_components == 0 || num_components > most {
+            return Err(AttributeError::Components { num_components });
+        }
+        if !num_values.is_multiple_of(num_components) {
+            return Err(AttributeError::Ragged { num_values, num_components });
+        }
+        let num_rows = self.num_rows();
+        let (domain, expected) = (self.domain, self.domain.num_elements(mesh));
+        let found = self.indices.as_ref().map_or(num_rows, Vec::len);
+        if found != expected {
+            return Err(AttributeError::Count { domain, expected, found });
+        }
+        let indices = self.indices.as_deref().unwrap_or_default();
+        let is_bad = |&index: &u32| index != NO_ROW && index as usize >= num_rows;
+        match indices.iter().position(is_bad) {
+            Some(element) => {
+                Err(AttributeError::IndexOutOfRange { element, index: indices[element], num_rows })
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// All attributes of a mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Attributes {
+    /// In the order of the file.
+    pub list: Vec<Attribute>,
+    /// What OBJ's `mtllib` statements name, each as it was written: files of materials.
+    pub material_libraries: Vec<String>,
+}
+
+impl Attributes {
+    /// The first attribute with this meaning.
+    pub fn find(&self, semantic: Semantic) -> Option<&Attribute> {
+        self.list.iter().find(|attribute| attribute.semantic == semantic)
+    }
+
+    /// Whether there is nothing at all.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty() && self.material_libraries.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_triangles() -> TriMesh {
+        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        TriMesh::new(square.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap()
+    }
+
+    fn uv(indices: &[u32]) -> Attribute {
+        let values = Values::F32(vec![0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0]);
+        let indices = Some(indices.to_vec());
+        Attribute { indices, ..Attribute::new("vt", Semantic::TexCoord(0), Domain::Corner, 2, values) }
+    }
+
+    #[test]
+    fn each_broken_rule_has_its_error() {
+        let mesh = two_triangles();
+        let good = uv(&[0, 1, 2, 0, 2, NO_ROW]);
+        assert_eq!(good.validate(&mesh), Ok(()));
+        let components = |n| Attribute { num_components: n, ..good.clone() }.validate(&mesh);
+        assert_eq!(components(0), Err(AttributeError::Components { num_components: 0 }));
+        assert_eq!(components(17), Err(AttributeError::Components { num_components: 17 }));
+        assert_eq!(components(3), Err(AttributeError::Ragged { num_values: 8, num_components: 3 }));
+        let names = Attribute { values: Values::Names(vec!["a".into(); 2]), ..good.clone() };
+        assert_eq!(names.validate(&mesh), Err(AttributeError::Components { num_components: 2 }));
+        let count = |domain, expected, found| Err(AttributeError::Count { domain, expected, found });
+        assert_eq!(uv(&[0; 5]).validate(&mesh), count(Domain::Corner, 6, 5));
+        let own_rows = |domain| Attribute { domain, indices: None, ..good.clone() }.validate(&mesh);
+        assert_eq!(own_rows(Domain::Face), count(Domain::Face, 2, 4));
+        assert_eq!(own_rows(Domain::Vertex), Ok(()));
+        let beyond = AttributeError::IndexOutOfRange { element: 4, index: 4, num_rows: 4 };
+        assert_eq!(uv(&[0, 1, 2, 3, 4, 5]).validate(&mesh), Err(beyond));
+    }
+
+    #[test]
+    fn rows_are_found_in_every_domain() {
+        let mesh = two_triangles();
+        let corner = uv(&[0, 1, 2, 3, NO_ROW, 2]);
+        assert_eq!([0, 1, 2].map(|c| corner.row_at_corner(&mesh, 1, c)), [Some(3), None, Some(2)]);
+        let vertex = Attribute { domain: Domain::Vertex, indices: None, ..corner.clone() };
+        assert_eq!([0, 1, 2].map(|c| vertex.row_at_corner(&mesh, 1, c)), [Some(0), Some(2), Some(3)]);
+        let face = Attribute { domain: Domain::Face, indices: Some(vec![1, 2]), ..corner };
+        assert_eq!([0, 1, 2].map(|c| face.row_at_corner(&mesh, 1, c)), [Some(2); 3]);
+        assert_eq!((face.row(2), face.row_at_corner(&mesh, 2, 0)), (None, None));
+    }
+
+    #[test]
+    fn corners_without_seam_are_attributes_of_vertices() {
+        let mesh = two_triangles();
+        // Rows 2 and 3 are equal, rows 0 and 1 are not.
+        let vertex = uv(&[0, 1, 2, 0, 3, 1]).without_seams(&mesh).unwrap();
+        assert_eq!(vertex.validate(&mesh), Ok(()));
+        assert_eq!(vertex.indices, Some(vec![0, 1, 2, 1]));
+        assert_eq!(uv(&[0, 1, 2, 1, 2, 1]).without_seams(&mesh), None);
+        assert_eq!(uv(&[0, 1, 2, NO_ROW, 2, 1]).without_seams(&mesh), None);
+        assert_eq!(vertex.without_seams(&mesh), None);
+    }
+
+    #[test]
+    fn normalised_integers_are_fractions() {
+        let values = Values::I8(vec![-128, -127, 0, 127]);
+        let raw = Attribute::new("n", Semantic::Generic, Domain::Vertex, 1, values);
+        let fraction = Attribute { is_normalized: true, ..raw.clone() };
+        assert_eq!([0, 1, 2, 3].map(|row| raw.number(row, 0)), [-128.0, -127.0, 0.0, 127.0].map(Some));
+        assert_eq!([0, 1, 2, 3].map(|row| fraction.number(row, 0)), [-1.0, -1.0, 0.0, 1.0].map(Some));
+    }
+}

@@ -1,0 +1,506 @@
+//! glTF: what a scene becomes, what is refused, and what is written.
+#![cfg(feature = "gltf")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use base64::Engine;
+use lwc::{
+    TriMesh,
+    io::{self, Format, MeshFile, ReadError},
+    mesh::{Attribute, Domain, NO_ROW, ScalarType, Semantic, Values},
+};
+use serde_json::{Value, json};
+use std::fs;
+
+/// A document while it is made: each array is a view of one buffer.
+#[derive(Default)]
+struct Model {
+    buffer: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl Model {
+    fn view(&mut self, bytes: &[u8]) -> usize {
+        self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
+        let view = json!({ "buffer": 0, "byteOffset": self.buffer.len(), "byteLength": bytes.len() });
+        self.buffer.extend(bytes);
+        self.views.push(view);
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, accessor: Value) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    fn floats(&mut self, shape: &str, n: usize, numbers: &[f32]) -> usize {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|c| c.to_le_bytes()).collect();
+        let view = self.view(&bytes);
+        let count = numbers.len() / n;
+        self.accessor(json!({ "bufferView": view, "componentType": 5126, "count": count, "type": shape }))
+    }
+
+    fn bytes(&mut self, shape: &str, n: usize, numbers: &[u8]) -> usize {
+        let view = self.view(numbers);
+        let count = numbers.len() / n;
+        self.accessor(json!({ "bufferView": view, "componentType": 5121, "count": count, "type": shape }))
+    }
+
+    fn shorts(&mut self, numbers: &[u16]) -> usize {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|c| c.to_le_bytes()).collect();
+        let view = self.view(&bytes);
+        let count = numbers.len();
+        self.accessor(json!({ "bufferView": view, "componentType": 5123, "count": count, "type": "SCALAR" }))
+    }
+
+    /// The document with what `rest` adds; its buffer is in it unless `rest` has others.
+    fn document(&self, rest: Value) -> Value {
+        let data = base64::engine::general_purpose::STANDARD.encode(&self.buffer);
+        let uri = format!("data:application/octet-stream;base64,{data}");
+        let mut document = json!({
+            "asset": { "version": "2.0" },
+            "buffers": [{ "byteLength": self.buffer.len(), "uri": uri }],
+            "bufferViews": self.views,
+            "accessors": self.accessors,
+        });
+        for (key, value) in rest.as_object().unwrap() {
+            document[key] = value.clone();
+        }
+        document
+    }
+
+    fn read(&self, rest: Value) -> Result<MeshFile, ReadError> {
+        read(&self.document(rest))
+    }
+}
+
+fn read(document: &Value) -> Result<MeshFile, ReadError> {
+    io::read_bytes(document.to_string().as_bytes(), Format::Gltf)
+}
+
+fn refusal(result: Result<MeshFile, ReadError>) -> String {
+    result.expect_err("accepted").to_string()
+}
+
+fn named<'a>(file: &'a MeshFile, name: &str) -> &'a Attribute {
+    let found = file.attributes.list.iter().find(|attribute| attribute.name == name);
+    found.unwrap_or_else(|| panic!("no {name} in {:?}", file.attributes))
+}
+
+/// The places of the corners: equal for equal triangles, however the vertices are numbered.
+fn corners(mesh: &TriMesh) -> Vec<[[f64; 3]; 3]> {
+    mesh.triangles().iter().map(|t| t.map(|v| mesh.positions()[v as usize])).collect()
+}
+
+/// The numbers at every corner.
+fn at_corners(file: &MeshFile, name: &str) -> Vec<Option<f64>> {
+    let attribute = named(file, name);
+    let corner = |k: usize| attribute.row_at_corner(&file.mesh, k / 3, k % 3);
+    let numbers = |k| (0..attribute.num_components).map(move |c| attribute.number(corner(k)?, c));
+    (0..3 * file.mesh.num_triangles()).flat_map(numbers).collect()
+}
+
+const SQUARE: [f32; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
+
+fn one_mesh(primitives: Value) -> Value {
+    json!({ "meshes": [{ "primitives": primitives }], "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }], "scene": 0 })
+}
+
+// --- Primitives ----------------------------------------------------------------------------------------
+
+#[test]
+fn lists_strips_and_fans_of_all_index_types_are_triangles() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE);
+    let bytes = model.bytes("SCALAR", 1, &[0, 1, 2, 0, 2, 3]);
+    let shorts = model.shorts(&[1, 2, 0, 3]);
+    let view = model.view(&[0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0]);
+    let words =
+        model.accessor(json!({ "bufferView": view, "componentType": 5125, "count": 4, "type": "SCALAR" }));
+    let primitive = |indices: usize, mode: u32| json!({ "attributes": { "POSITION": position }, "indices": indices, "mode": mode });
+    let square = [[0, 1, 2], [0, 2, 3]];
+    let triangles = |primitives: Value| model.read(one_mesh(primitives)).unwrap().mesh.triangles().to_vec();
+    assert_eq!(triangles(json!([primitive(bytes, 4)])), square);
+    assert_eq!(triangles(json!([primitive(shorts, 5)])), [[1, 2, 0], [2, 3, 0]]);
+    assert_eq!(triangles(json!([primitive(words, 6)])), [[1, 2, 0], [2, 3, 0]]);
+    assert_eq!(triangles(json!([{ "attributes": { "POSITION": position } }])), [[0, 1, 2]]);
+    let all = triangles(json!([primitive(bytes, 4), primitive(shorts, 5), primitive(words, 6)]));
+    assert_eq!(all.len(), 6);
+    let points = model.read(one_mesh(json!([primitive(bytes, 0), primitive(bytes, 4)]))).unwrap();
+    assert_eq!(
+        (points.mesh.triangles(), &*points.report.ignored),
+        (&square[..], &["points and lines".to_owned()][..])
+    );
+}
+
+#[test]
+fn seams_are_joined_and_what_has_none_is_of_vertices() {
+    let mut model = Model::default();
+    // The square as two triangles that share no vertex.
+    let at = |k: usize| [SQUARE[3 * k], SQUARE[3 * k + 1], SQUARE[3 * k + 2]];
+    let positions: Vec<f32> = [0, 1, 2, 0, 2, 3].into_iter().flat_map(at).collect();
+    let position = model.floats("VEC3", 3, &positions);
+    let normal = model.floats("VEC3", 3, &[0.0, 0.0, 1.0].repeat(6));
+    let uv = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.5, 0.5, 1.0, 1.0, 0.0, 1.0];
+    let texture = model.floats("VEC2", 2, &uv);
+    let colour = model.bytes("VEC4", 4, &[9, 8, 7, 255].repeat(6));
+    model.accessors[colour]["normalized"] = true.into();
+    let attributes =
+        json!({ "POSITION": position, "NORMAL": normal, "TEXCOORD_0": texture, "COLOR_0": colour });
+    let file = model.read(one_mesh(json!([{ "attributes": attributes }]))).unwrap();
+    assert_eq!(file.mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!((file.mesh.num_vertices(), file.report.corners_welded), (4, 2));
+
+    let uv_of_corners = named(&file, "TEXCOORD_0");
+    assert_eq!((uv_of_corners.semantic, uv_of_corners.domain), (Semantic::TexCoord(0), Domain::Corner));
+    // Corner 2 of both triangles has one value, corner 0 has two.
+    assert_eq!(uv_of_corners.indices, Some(vec![0, 1, 2, 3, 2, 4]));
+    assert_eq!(at_corners(&file, "TEXCOORD_0"), uv.map(|c| Some(f64::from(c))));
+    let colour = named(&file, "COLOR_0");
+    assert_eq!((colour.domain, colour.is_normalized), (Domain::Vertex, true));
+    assert_eq!(colour.values.scalar_type(), Some(ScalarType::U8));
+    assert_eq!(
+        (named(&file, "NORMAL").domain, named(&file, "NORMAL").indices.as_ref()),
+        (Domain::Vertex, None)
+    );
+
+    for format in [Format::Glb, Format::Gltf] {
+        let mut bytes = Vec::new();
+        let report = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, format).unwrap();
+        assert_eq!(report, io::WriteReport::default());
+        let again = io::read_bytes(&bytes, format).unwrap();
+        assert_eq!(corners(&again.mesh), corners(&file.mesh));
+        for name in ["NORMAL", "TEXCOORD_0", "COLOR_0"] {
+            assert_eq!(at_corners(&again, name), at_corners(&file, name), "{name}");
+            assert_eq!(named(&again, name).values.scalar_type(), named(&file, name).values.scalar_type());
+        }
+    }
+}
+
+#[test]
+fn primitives_share_vertices_and_have_materials() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE);
+    let other = model.floats("VEC3", 3, &[5.0; 9]);
+    let custom = model.bytes("SCALAR", 1, &[1, 2, 3]);
+    let indices = [model.bytes("SCALAR", 1, &[0, 1, 2]), model.bytes("SCALAR", 1, &[0, 2, 3])];
+    let primitive = |k: usize, material: Value| json!({ "attributes": { "POSITION": position }, "indices": indices[k], "material": material });
+    let last = json!({ "attributes": { "POSITION": other, "_ID": custom } });
+    let mut rest =
+        one_mesh(json!([primitive(0, 2.into()), primitive(1, 0.into()), primitive(0, 2.into()), last]));
+    rest["materials"] = json!([{ "name": "blue" }, { "name": "unused" }, { "name": "red" }]);
+    let file = model.read(rest).unwrap();
+    assert_eq!(file.mesh.num_vertices(), 5);
+    let material = named(&file, "material");
+    assert_eq!(material.values.names().unwrap(), ["red", "blue"]);
+    assert_eq!(material.indices, Some(vec![0, 1, 0, NO_ROW]));
+    let id = named(&file, "_ID");
+    assert_eq!((id.semantic, id.domain), (Semantic::Generic, Domain::Corner));
+    assert_eq!(at_corners(&file, "_ID")[8..], [None, Some(1.0), Some(2.0), Some(3.0)]);
+    assert_eq!(file.report.ignored, ["materials but their names"]);
+
+    let mut bytes = Vec::new();
+    let report = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Glb).unwrap();
+    assert_eq!((report.ignored, report.zeroed), (vec![], vec!["_ID".to_owned()]));
+    let again = io::read_bytes(&bytes, Format::Glb).unwrap();
+    // One primitive for each material: the triangles without one come first.
+    assert_eq!(named(&again, "material").indices, Some(vec![NO_ROW, 0, 0, 1]));
+    assert_eq!(named(&again, "material").values, material.values);
+}
+
+#[test]
+fn sparse_and_missing_buffers_are_zeros_with_exceptions() {
+    let mut model = Model::default();
+    let (indices, values) = (model.view(&[1, 2]), model.view(&[1f32.to_le_bytes(); 6].concat()));
+    let sparse = json!({
+        "count": 2,
+        "indices": { "bufferView": indices, "componentType": 5121 },
+        "values": { "bufferView": values },
+    });
+    let position =
+        model.accessor(json!({ "componentType": 5126, "count": 3, "type": "VEC3", "sparse": sparse }));
+    let rest = one_mesh(json!([{ "attributes": { "POSITION": position } }]));
+    let file = model.read(rest.clone()).unwrap();
+    assert_eq!(file.mesh.positions(), [[0.0; 3], [1.0; 3]]);
+    assert_eq!(file.mesh.triangles(), [[0, 1, 1]]);
+
+    model.accessors[position]["sparse"]["count"] = 3.into();
+    assert!(
+        refusal(model.read(rest.clone())).contains("accessor 0: 3 elements do not fit into buffer view 0")
+    );
+    model.accessors[position]["sparse"]["count"] = 2.into();
+    model.accessors[position]["count"] = 2.into();
+    assert_eq!(refusal(model.read(rest)), "accessor 0: sparse index 2, but there are 2 elements");
+}
+
+#[test]
+fn quantised_positions_and_strides_are_understood() {
+    let mut model = Model::default();
+    let view = model.view(&[0, 0, 0, 99, 255, 0, 0, 99, 0, 51, 0, 99]);
+    model.views[view]["byteStride"] = 4.into();
+    let accessor = |normalized| json!({ "bufferView": view, "componentType": 5121, "count": 3, "type": "VEC3", "normalized": normalized });
+    let (raw, fraction) = (model.accessor(accessor(false)), model.accessor(accessor(true)));
+    let positions = |index: usize| {
+        let mut rest = one_mesh(json!([{ "attributes": { "POSITION": index } }]));
+        rest["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+        rest["nodes"] = json!([{ "mesh": 0, "scale": [2, 2, 2], "translation": [1, 0, 0] }]);
+        model.read(rest).unwrap().mesh.positions().to_vec()
+    };
+    assert_eq!(positions(raw), [[1.0, 0.0, 0.0], [511.0, 0.0, 0.0], [1.0, 102.0, 0.0]]);
+    assert_eq!(positions(fraction), [[1.0, 0.0, 0.0], [3.0, 0.0, 0.0], [1.0, 0.4, 0.0]]);
+}
+
+// --- Scenes --------------------------------------------------------------------------------------------
+
+#[test]
+fn instances_are_kept_or_merged_in_their_places() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let slanted = [1.0f32, 0.0, 1.0].map(|c| c / 2f32.sqrt());
+    let normal = model.floats("VEC3", 3, &slanted.repeat(3));
+    let primitives = json!([{ "attributes": { "POSITION": position, "NORMAL": normal } }]);
+    let document = model.document(json!({
+        "meshes": [{ "name": "m", "primitives": primitives }, { "primitives": [] }],
+        "nodes": [
+            { "children": [1, 2], "translation": [10, 0, 0] },
+            { "mesh": 0, "name": "turned", "rotation": [0, 0, 0.5f64.sqrt(), 0.5f64.sqrt()], "scale": [2, 1, 1] },
+            { "mesh": 0, "matrix": [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1] },
+        ],
+        "scenes": [{ "nodes": [0] }],
+    }));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.gltf");
+    fs::write(&path, document.to_string()).unwrap();
+    let scene = io::read_scene(&path).unwrap();
+    assert_eq!((scene.meshes.len(), scene.instances.len()), (2, 2));
+    let names: Vec<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
+    assert_eq!(names, ["turned", "m"]);
+    assert_eq!(
+        scene.instances[1].transform,
+        [[-1.0, 0.0, 0.0, 10.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 5.0]]
+    );
+    assert_eq!(scene.meshes[0].mesh.positions()[1], [1.0, 0.0, 0.0], "in its own coordinates");
+
+    let file = io::read(&path).unwrap();
+    assert_eq!(scene.merge().unwrap(), file);
+    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+    assert!(near(&file.mesh.positions()[2], &[9.0, 2.0, 0.0]), "{:?}", file.mesh.positions());
+    assert_eq!(file.mesh.triangles(), [[0, 1, 2], [3, 5, 4]], "the mirrored one keeps its outside");
+    assert_eq!(file.mesh.positions()[4], [9.0, 0.0, 5.0]);
+    let normals: Vec<f64> = at_corners(&file, "NORMAL").into_iter().flatten().collect();
+    let length = 1.25f64.sqrt();
+    assert!(near(&normals[..3], &[0.0, 0.5 / length, 1.0 / length]), "{normals:?}");
+    assert!(near(&normals[9..12], &[-(0.5f64.sqrt()), 0.0, 0.5f64.sqrt()]), "{normals:?}");
+    assert_eq!(named(&file, "node").values.names().unwrap(), ["turned", "m"]);
+    assert_eq!(file.report.ignored, ["meshes outside the scene"]);
+}
+
+#[test]
+fn scenes_that_are_no_trees_are_refused() {
+    let model = Model::default();
+    let read = |nodes: Value, roots: Value| {
+        refusal(model.read(json!({ "nodes": nodes, "scenes": [{ "nodes": roots }], "buffers": [] })))
+    };
+    assert_eq!(read(json!([{ "children": [0] }]), json!([0])), "node 0: is in the scene twice");
+    assert_eq!(read(json!([{}, { "children": [0] }]), json!([0, 1])), "node 0: is in the scene twice");
+    assert_eq!(read(json!([{}]), json!([1])), "node 1: does not exist");
+    assert_eq!(read(json!([{ "mesh": 0 }]), json!([0])), "node 0: there is no mesh 0");
+    let far = json!([{ "scale": [1e200, 1, 1], "children": [1] }, { "scale": [1e200, 1, 1] }]);
+    assert_eq!(read(far, json!([0])), "node 1: has a transform that is not finite");
+    let empty = model.read(json!({ "buffers": [] })).unwrap();
+    assert_eq!(empty.mesh, TriMesh::default());
+}
+
+// --- Containers and buffers ----------------------------------------------------------------------------
+
+#[test]
+fn buffers_in_other_files_are_read_from_the_folder_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let rest = one_mesh(json!([{ "attributes": { "POSITION": position } }]));
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    fs::write(folder.path().join("sub/a b.bin"), &model.buffer).unwrap();
+    fs::write(folder.path().join("secret.bin"), &model.buffer).unwrap();
+    let path = folder.path().join("sub/model.gltf");
+    let with_uri = |uri: &str| {
+        let mut document = model.document(rest.clone());
+        document["buffers"][0]["uri"] = uri.into();
+        fs::write(&path, document.to_string()).unwrap();
+        io::read(&path)
+    };
+    assert_eq!(with_uri("a%20b.bin").unwrap().mesh.num_triangles(), 1);
+    assert_eq!(with_uri("./a b.bin").unwrap().mesh.num_triangles(), 1);
+    let elsewhere = "is not a file in the folder of the model";
+    for uri in ["../secret.bin", "%2e%2e/secret.bin", "/etc/passwd", "file:///etc/passwd", "http://x/a.bin"] {
+        let message = refusal(with_uri(uri));
+        assert!(message.starts_with("buffer 0: ") && message.ends_with(elsewhere), "{uri}: {message}");
+    }
+    assert!(refusal(with_uri("missing.bin")).starts_with("buffer 0: `missing.bin`: "));
+    fs::write(folder.path().join("sub/short.bin"), &model.buffer[1..]).unwrap();
+    assert_eq!(refusal(with_uri("short.bin")), "buffer 0: 35 bytes of 36");
+    assert!(refusal(with_uri("data:text/plain,abc")).contains("not base64"));
+    assert!(refusal(with_uri("data:;base64,@@")).contains("not base64"));
+    let mut document = model.document(rest);
+    document["buffers"][0]["uri"] = "a b.bin".into();
+    assert!(refusal(read(&document)).contains("no folder to look for it"));
+}
+
+#[test]
+fn refusals_name_the_part_and_the_cause() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE);
+    let nan = model.floats("VEC3", 3, &[0.0, f32::NAN, 0.0]);
+    let indices = model.bytes("SCALAR", 1, &[0, 1, 4]);
+    let primitive = |attributes: Value, more: Value| {
+        let mut primitive = json!({ "attributes": attributes });
+        more.as_object().unwrap().iter().for_each(|(key, value)| primitive[key] = value.clone());
+        refusal(model.read(one_mesh(json!([primitive]))))
+    };
+    let good = json!({ "POSITION": position });
+    assert_eq!(
+        primitive(good.clone(), json!({ "indices": indices })),
+        "accessor 2: index 3 is vertex 4, but there are 4"
+    );
+    assert_eq!(
+        primitive(good.clone(), json!({ "indices": position })),
+        "accessor 0: indices that are not unsigned integers"
+    );
+    assert_eq!(primitive(good.clone(), json!({ "indices": 9 })), "accessor 9: does not exist");
+    assert_eq!(primitive(good.clone(), json!({ "material": 0 })), "mesh 0: there is no material 0");
+    assert_eq!(primitive(good.clone(), json!({ "mode": 7 })), "mesh 0: a primitive of mode 7");
+    assert_eq!(
+        primitive(json!({ "POSITION": nan }), json!({})),
+        "accessor 1: vertex 1 of 1 has a coordinate that is not finite"
+    );
+    assert_eq!(
+        primitive(json!({ "POSITION": indices }), json!({})),
+        "accessor 2: positions that are not VEC3"
+    );
+    let mismatch = json!({ "POSITION": position, "NORMAL": nan });
+    assert_eq!(primitive(mismatch, json!({})), "accessor 1: NORMAL: 1 elements for 4 positions");
+
+    let required = |name: &str| refusal(model.read(json!({ "extensionsRequired": [name] })));
+    for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "NOBODY_knows"] {
+        assert_eq!(required(name), format!("document 0: the file requires {name}"));
+    }
+    let mut bare = model.document(one_mesh(json!([
+        { "attributes": good, "extensions": { "KHR_draco_mesh_compression": {} } }
+    ])));
+    assert!(read(&bare).is_ok(), "there is an uncompressed copy");
+    bare["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+    assert_eq!(refusal(read(&bare)), "mesh 0: compressed with KHR_draco_mesh_compression");
+    let mut packed = model.document(one_mesh(json!([{ "attributes": { "POSITION": position } }])));
+    packed["bufferViews"][0]["extensions"] = json!({ "EXT_meshopt_compression": {} });
+    packed["buffers"][0] = json!({ "byteLength": 1000 });
+    assert_eq!(refusal(read(&packed)), "accessor 0: compressed with EXT_meshopt_compression");
+
+    let text = |text: &str| refusal(io::read_bytes(text.as_bytes(), Format::Gltf));
+    assert_eq!(text("{\n\"asset\": {}}"), "line 1: glTF version ``");
+    assert_eq!(text("{\"asset\": {\"version\": \"1.0\"}}"), "line 1: glTF version `1.0`");
+    assert!(text("{\n\n]").starts_with("line 3: not a glTF document: "), "{}", text("{\n\n]"));
+    assert!(text("").starts_with("line 1: not a glTF document: "));
+    assert!(text(&"[".repeat(100_000)).contains("not a glTF document"));
+}
+
+#[test]
+fn declared_counts_are_not_believed() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE);
+    let huge = |rest: Value| {
+        let mut document = model.document(one_mesh(json!([{ "attributes": { "POSITION": position } }])));
+        rest.as_object()
+            .unwrap()
+            .iter()
+            .for_each(|(key, value)| document["accessors"][0][key] = value.clone());
+        read(&document).expect_err("accepted")
+    };
+    for count in [5u64, 1 << 32, u64::MAX] {
+        let error = huge(json!({ "count": count }));
+        assert!(matches!(error, ReadError::Syntax { .. } | ReadError::TooLarge { .. }), "{count}: {error}");
+        let error = huge(json!({ "count": 4, "byteOffset": count }));
+        assert!(matches!(error, ReadError::Syntax { .. }), "{error}");
+    }
+    let error = huge(json!({ "count": u64::MAX, "bufferView": null }));
+    assert!(matches!(error, ReadError::TooLarge { .. }), "{error}");
+
+    // One triangle in 200,000 places, which is 600,000 vertices, is fine; a mesh of thousands is not.
+    let positions = model.floats("VEC3", 3, &[0.5; 3 * 30_000]);
+    let nodes: Vec<Value> = (0..3_000).map(|_| json!({ "mesh": 0 })).collect();
+    let scene = |position: usize| {
+        let roots: Vec<usize> = (0..nodes.len()).collect();
+        let primitives = json!([{ "attributes": { "POSITION": position } }]);
+        json!({ "meshes": [{ "primitives": primitives }], "nodes": nodes, "scenes": [{ "nodes": roots }] })
+    };
+    assert_eq!(model.read(scene(position)).unwrap().mesh.num_triangles(), 3_000);
+    let error = model.read(scene(positions)).expect_err("accepted");
+    assert_eq!(error.to_string(), "too large: 3000 instances out of proportion to the file");
+}
+
+#[test]
+fn no_truncation_and_no_flipped_byte_panics() {
+    let file = io::read_bytes(
+        b"v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nvt 0 0\nvt 1 1\nvn 0 0 1\nusemtl a\n\
+          f 1/1/1 2/2/1 3/1/1\nusemtl b\nf 1/2/1 3/1/1 2/2/1\n",
+        Format::Obj,
+    )
+    .unwrap();
+    let mut bytes = Vec::new();
+    io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Glb).unwrap();
+    for end in 0..bytes.len() {
+        assert!(io::read_bytes(&bytes[..end], Format::Glb).is_err(), "{end} of {} bytes", bytes.len());
+        for flip in [0x01, 0x10, 0x80, 0xff] {
+            let mut damaged = bytes.clone();
+            damaged[end] ^= flip;
+            let _ = io::read_bytes(&damaged, Format::Glb);
+        }
+    }
+}
+
+#[test]
+fn a_glb_is_framed_as_it_should_be() {
+    let mesh = TriMesh::new(vec![[0.0; 3], [1.5, 0.0, 0.0], [0.0, -2.0, 0.0]], vec![[0, 1, 2]]).unwrap();
+    let mut bytes = Vec::new();
+    io::write_to(&mut bytes, &mesh, Format::Glb).unwrap();
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    assert_eq!((&bytes[..4], word(4), word(8)), (&b"glTF"[..], 2, bytes.len()));
+    let text = word(12);
+    assert_eq!((&bytes[16..20], text % 4, &bytes[24 + text..28 + text]), (&b"JSON"[..], 0, &b"BIN\0"[..]));
+    let document: Value = serde_json::from_slice(&bytes[20..20 + text]).unwrap();
+    assert_eq!(document["accessors"][0]["min"], json!([0.0, -2.0, 0.0]));
+    assert_eq!(document["accessors"][0]["max"], json!([1.5, 0.0, 0.0]));
+    assert_eq!(document["accessors"][1]["componentType"], 5123);
+    assert_eq!(word(20 + text), 44, "padded");
+    assert_eq!(io::read_bytes(&bytes, Format::Glb).unwrap().mesh, mesh);
+
+    let far = TriMesh::new(vec![[1e39, 0.0, 0.0]; 3], vec![[0, 1, 2]]).unwrap();
+    for unrepresentable in [far, TriMesh::default()] {
+        assert!(io::write_to(Vec::new(), &unrepresentable, Format::Glb).is_err());
+    }
+    let mut attributes = lwc::mesh::Attributes::default();
+    let vertex = |name: &str, n, values| Attribute::new(name, Semantic::Generic, Domain::Vertex, n, values);
+    attributes.list = vec![
+        vertex("id", 1, Values::U32(vec![1, 2, (1 << 24) + 1])),
+        vertex("heat", 1, Values::F64(vec![0.1, 0.2, 0.3])),
+        vertex("bad", 1, Values::F32(vec![0.0, f32::NAN, 0.0])),
+        vertex("JOINTS_0", 4, Values::U8(vec![0; 12])),
+        vertex("wide", 5, Values::U8(vec![0; 15])),
+        vertex("small int", 3, Values::I8(vec![-1, 2, -3, 4, -5, 6, -7, 8, -9])),
+    ];
+    let mut bytes = Vec::new();
+    let report = io::write_with_attributes_to(&mut bytes, &mesh, &attributes, Format::Glb).unwrap();
+    assert_eq!(report.ignored, ["id", "bad", "JOINTS_0", "wide"]);
+    let again = io::read_bytes(&bytes, Format::Glb).unwrap();
+    assert_eq!(named(&again, "_HEAT").values, Values::F32(vec![0.1, 0.2, 0.3]));
+    assert_eq!(named(&again, "_SMALL_INT").values, attributes.list[5].values);
+}
+
+#[test]
+fn a_stored_file_is_read() {
+    let file =
+        io::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/seam.glb")).unwrap();
+    assert_eq!((file.mesh.num_vertices(), file.mesh.num_triangles()), (5, 2));
+    assert_eq!(named(&file, "material").values.names().unwrap(), ["red", "blue"]);
+    assert_eq!(named(&file, "TEXCOORD_0").domain, Domain::Corner);
+    assert_eq!(named(&file, "COLOR_0").domain, Domain::Vertex);
+}

@@ -1,0 +1,282 @@
+//! Point clouds of terrain in LAS and LAZ.
+#![cfg(feature = "las")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use lwc::{
+    io::{self, Format, MeshFile, Place, ReadError, TerrainOptions},
+    mesh::{Attribute, Semantic, Values},
+};
+use std::path::{Path, PathBuf};
+
+/// x, y and z in steps, return number, number of returns, class.
+type Point = ([i32; 3], u8, u8, u8);
+
+/// A file of version 1.2, or 1.4 for the newer point formats; steps of 0.01 from (1000, 2000, -5).
+fn las(format: u8, points: &[Point]) -> Vec<u8> {
+    let is_old = format <= 5;
+    let (minor, header_bytes) = if is_old { (2, 227) } else { (4, 375) };
+    let record_bytes: u16 = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67][usize::from(format)];
+    let mut bytes = vec![0; header_bytes];
+    let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
+    put(0, b"LASF");
+    put(24, &[1, minor]);
+    put(94, &(header_bytes as u16).to_le_bytes());
+    put(96, &(header_bytes as u32).to_le_bytes());
+    put(104, &[format]);
+    put(105, &record_bytes.to_le_bytes());
+    put(107, &(points.len() as u32).to_le_bytes());
+    put(131, [0.01f64, 0.01, 0.01].map(f64::to_le_bytes).as_flattened());
+    put(155, [1000.0f64, 2000.0, -5.0].map(f64::to_le_bytes).as_flattened());
+    if !is_old {
+        put(247, &(points.len() as u64).to_le_bytes());
+    }
+    let colour_at = [0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30][usize::from(format)];
+    for (k, &(grid, number, of, class)) in points.iter().enumerate() {
+        let mut record = vec![0; usize::from(record_bytes)];
+        record[..12].copy_from_slice(grid.map(i32::to_le_bytes).as_flattened());
+        record[12..14].copy_from_slice(&(1000 + k as u16).to_le_bytes());
+        record[14] = if is_old { number | of << 3 } else { number | of << 4 };
+        record[if is_old { 15 } else { 16 }] = class;
+        if colour_at > 0 {
+            let colour = [k as u16, 300, 65535].map(u16::to_le_bytes);
+            record[colour_at..colour_at + 6].copy_from_slice(colour.as_flattened());
+        }
+        bytes.extend(record);
+    }
+    bytes
+}
+
+const SQUARE: [Point; 6] = [
+    ([0, 0, 0], 1, 1, 2),
+    ([100, 0, 50], 1, 2, 5),
+    ([100, 0, 20], 2, 2, 2),
+    ([100, 100, 0], 1, 1, 6),
+    ([0, 100, 0], 1, 1, 2),
+    ([40, 60, -7], 1, 3, 9),
+];
+
+fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
+    io::read_bytes(bytes, Format::Las)
+}
+
+fn read_with(bytes: &[u8], set: impl Fn(&mut TerrainOptions)) -> MeshFile {
+    let mut options = TerrainOptions::default();
+    set(&mut options);
+    io::read_terrain_bytes(bytes, &options).unwrap()
+}
+
+fn named<'a>(file: &'a MeshFile, name: &str) -> &'a Attribute {
+    file.attributes.list.iter().find(|attribute| attribute.name == name).unwrap()
+}
+
+/// Twice the area of a triangle in the plane, positive if it is counter-clockwise from above.
+fn doubled_areas(file: &MeshFile) -> Vec<f64> {
+    let area = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| file.mesh.positions()[v as usize]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    file.mesh.triangles().iter().map(area).collect()
+}
+
+#[test]
+fn points_of_all_formats_become_a_surface() {
+    for format in 0..=10 {
+        let file = read(&las(format, &SQUARE)).unwrap();
+        let positions = file.mesh.positions();
+        assert_eq!((positions.len(), file.mesh.num_triangles()), (5, 4), "format {format}");
+        assert_eq!(positions[0], [1000.0, 2000.0, -5.0]);
+        assert_eq!(positions[1], [1001.0, 2000.0, 0.2 - 5.0], "the lower of two");
+        assert_eq!(file.report.points_left_out, 1);
+        assert!(doubled_areas(&file).iter().all(|&area| area > 0.0), "counter-clockwise from above");
+        assert!((doubled_areas(&file).iter().sum::<f64>() - 2.0).abs() < 1e-9);
+
+        assert_eq!(named(&file, "classification").values, Values::U8(vec![2, 2, 6, 2, 9]));
+        assert_eq!(named(&file, "intensity").values, Values::U16(vec![1000, 1002, 1003, 1004, 1005]));
+        let colour = file.attributes.find(Semantic::Color(0));
+        assert_eq!(colour.is_some(), [2, 3, 5, 7, 8, 10].contains(&format), "format {format}");
+        if let Some(colour) = colour {
+            assert!(colour.is_normalized);
+            let expected = [0, 2, 3, 4, 5].map(|k| [k, 300, 65535]);
+            assert_eq!(colour.values, Values::U16(expected.concat()));
+        }
+    }
+}
+
+#[test]
+fn returns_and_cells_choose_points() {
+    let bytes = las(3, &SQUARE);
+    let file = read_with(&bytes, |options| options.last_returns_only = true);
+    assert_eq!(named(&file, "classification").values, Values::U8(vec![2, 2, 6, 2]));
+    assert_eq!((file.mesh.num_triangles(), file.report.points_left_out), (2, 2));
+
+    let grid: Vec<Point> = (0..2500).map(|k| ([k % 50 * 100, k / 50 * 100, k], 1, 1, 2)).collect();
+    let bytes = las(0, &grid);
+    let file = read_with(&bytes, |options| options.cell_size = Some(10.0));
+    assert_eq!((file.mesh.num_vertices(), file.report.points_left_out), (25, 2475));
+    let file = read_with(&bytes, |options| options.max_points = Some(400));
+    assert!((200..=400).contains(&file.mesh.num_vertices()), "{}", file.mesh.num_vertices());
+    let file = read_with(&bytes, |options| options.max_points = Some(0));
+    assert_eq!(file.mesh.num_vertices(), 0);
+}
+
+#[test]
+fn points_on_a_line_have_no_triangles() {
+    let line: Vec<Point> = (0..9).map(|k| ([k, 2 * k, 0], 1, 1, 2)).collect();
+    for points in [&line[..], &line[..1], &[]] {
+        let file = read(&las(1, points)).unwrap();
+        assert_eq!((file.mesh.num_vertices(), file.mesh.num_triangles()), (points.len(), 0));
+    }
+}
+
+#[test]
+fn extreme_coordinates_are_triangulated() {
+    let far = [i32::MIN, i32::MAX].map(|x| [i32::MIN, i32::MAX].map(|y| ([x, y, 0], 1, 1, 2)));
+    let file = read(&las(0, &[far.concat(), vec![([1, 1, 0], 1, 1, 2)]].concat())).unwrap();
+    assert_eq!((file.mesh.num_vertices(), file.mesh.num_triangles()), (5, 4));
+}
+
+#[test]
+fn refusals_name_the_byte_and_the_cause() {
+    let good = las(3, &SQUARE);
+    let with = |at: usize, field: &[u8]| {
+        let mut bytes = good.clone();
+        bytes[at..at + field.len()].copy_from_slice(field);
+        read(&bytes).expect_err("accepted").to_string()
+    };
+    assert_eq!(with(0, b"LAZF"), "byte 0: not a LAS file: it does not begin with `LASF`");
+    assert_eq!(with(25, &[5]), "byte 24: LAS version 1.5");
+    assert_eq!(with(104, &[11]), "byte 104: point format 11");
+    assert_eq!(with(105, &[33]), "byte 105: points of 33 bytes, but format 3 has 34");
+    assert_eq!(with(107, &[7]), "byte 431: the file ends in point 7 of 7");
+    assert_eq!(with(107, &[0xff; 4]), "byte 431: the file ends in point 7 of 4294967295");
+    assert!(with(96, &[0xff; 4]).starts_with("byte 96: points at byte 4294967295"));
+    assert!(with(131, &0f64.to_le_bytes()).starts_with("byte 131: a scale that is not a positive number"));
+    assert!(with(139, &f64::NAN.to_le_bytes()).starts_with("byte 131: a scale"));
+    assert!(with(131, &1e300f64.to_le_bytes()).starts_with("byte 131: a scale"), "overflows");
+    assert!(with(131, &1e200f64.to_le_bytes()).starts_with("byte 131: scales of"));
+    assert!(with(171, &f64::INFINITY.to_le_bytes()).starts_with("byte 155: an offset"));
+    assert_eq!(with(104, &[0x83]), "byte 227: compressed, but it does not say how");
+    for end in 0..good.len() {
+        assert!(matches!(read(&good[..end]), Err(ReadError::Syntax { .. })), "{end}");
+        for flip in [0x01, 0x10, 0x80, 0xff] {
+            let mut damaged = good.clone();
+            damaged[end] ^= flip;
+            let _ = read(&damaged);
+        }
+    }
+}
+
+// --- LAZ -----------------------------------------------------------------------------------------------
+
+/// The same file compressed, as versions 1 to 3 of the compressor do it.
+fn laz(format: u8, points: &[Point]) -> Vec<u8> {
+    let plain = las(format, points);
+    let data_offset = u32::from_le_bytes(plain[96..100].try_into().unwrap()) as usize;
+    let items = laz::LazItemRecordBuilder::default_for_point_format_id(format, 0).unwrap();
+    let vlr = laz::LazVlr::from_laz_items(items);
+    let mut data = std::io::Cursor::new(Vec::new());
+    vlr.write_to(&mut data).unwrap();
+    let data = data.into_inner();
+    let mut bytes = plain[..data_offset].to_vec();
+    bytes[96..100].copy_from_slice(&((data_offset + 54 + data.len()) as u32).to_le_bytes());
+    bytes[100] = 1;
+    bytes[104] |= 0x80;
+    let mut head = [0; 54];
+    head[2..16].copy_from_slice(b"laszip encoded");
+    head[18..20].copy_from_slice(&22204u16.to_le_bytes());
+    head[20..22].copy_from_slice(&(data.len() as u16).to_le_bytes());
+    bytes.extend(head);
+    bytes.extend(data);
+    let mut out = std::io::Cursor::new(bytes);
+    out.set_position(out.get_ref().len() as u64);
+    let mut compressor = laz::LasZipCompressor::new(out, vlr).unwrap();
+    compressor.compress_many(&plain[data_offset..]).unwrap();
+    compressor.done().unwrap();
+    compressor.into_inner().into_inner()
+}
+
+#[test]
+fn compressed_points_are_the_same() {
+    for format in [0, 1, 2, 3, 6, 7, 8] {
+        let compressed = laz(format, &SQUARE);
+        let file =
+            io::read_bytes(&compressed, Format::Laz).unwrap_or_else(|e| panic!("format {format}: {e}"));
+        assert_eq!(file, read(&las(format, &SQUARE)).unwrap(), "format {format}");
+    }
+}
+
+#[test]
+fn damaged_compression_is_refused_without_harm() {
+    for format in [3, 7] {
+        let grid: Vec<Point> =
+            (0..300).map(|k| ([k % 17 * 90 + k % 5, k / 17 * 110, k % 40], 1, 1, 2)).collect();
+        let good = laz(format, &grid);
+        for end in (0..good.len()).step_by(7) {
+            let _ = read(&good[..end]);
+            for flip in [0x01, 0x80, 0xff] {
+                let mut damaged = good.clone();
+                damaged[end] ^= flip;
+                let _ = read(&damaged);
+            }
+        }
+        let mut many = good.clone();
+        let count = if format == 3 { 107 } else { 247 };
+        many[count..count + 4].copy_from_slice(&0x7fff_ffffu32.to_le_bytes());
+        assert!(matches!(read(&many), Err(ReadError::TooLarge { .. })));
+    }
+    // Layers that are longer than the file.
+    let mut long = laz(7, &SQUARE);
+    let start = u32::from_le_bytes(long[96..100].try_into().unwrap()) as usize;
+    let lengths = start + 8 + 36 + 4;
+    long[lengths + 8..lengths + 12].copy_from_slice(&u32::MAX.to_le_bytes());
+    match read(&long) {
+        Err(ReadError::Syntax { place: Place::Byte(at), message }) => {
+            assert_eq!(at, lengths);
+            assert!(message.contains("longer than the file"), "{message}");
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn stored_files_are_read_alike() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let plain = io::read(folder.join("terrain.las")).unwrap();
+    assert_eq!((plain.mesh.num_vertices(), plain.mesh.num_triangles()), (40, 64));
+    assert_eq!(io::read(folder.join("terrain.laz")).unwrap(), plain);
+    assert_eq!(io::read(folder.join("terrain-layered.laz")).unwrap(), plain);
+}
+
+// --- The corpus ----------------------------------------------------------------------------------------
+
+/// The test meshes, which are not part of the repository.
+fn corpus() -> Option<PathBuf> {
+    let named = std::env::var_os("LWC_CORPUS").map(PathBuf::from);
+    let found = named.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus"));
+    if found.is_dir() {
+        return Some(found);
+    }
+    eprintln!("skipped: no corpus at {}; set LWC_CORPUS", found.display());
+    None
+}
+
+#[test]
+fn a_real_scan_is_the_surface_that_others_make_of_it() {
+    let Some(directory) = corpus() else { return };
+    let path = directory.join("dem/autzen_trim.laz");
+    let mut options = TerrainOptions::default();
+    options.last_returns_only = true;
+    let ours = io::read_terrain(&path, &options).unwrap();
+    let theirs = io::read(directory.join("autzen-tin.ply.zst")).unwrap();
+    // Theirs lacks the few points that qhull leaves out.
+    let (n, m) = (ours.mesh.num_vertices(), theirs.mesh.num_vertices());
+    assert!(n >= m && n - m <= m / 1000, "{n} vertices, {m}");
+    let (a, b) = (ours.mesh.num_triangles(), theirs.mesh.num_triangles());
+    assert!(a.abs_diff(b) <= b / 500, "{a} triangles, {b}");
+    assert!(doubled_areas(&ours).iter().all(|&area| area > 0.0));
+    assert!(ours.attributes.find(Semantic::Color(0)).is_some());
+
+    options.max_points = Some(20_000);
+    let thinned = io::read_terrain(&path, &options).unwrap();
+    assert!((15_000..=20_000).contains(&thinned.mesh.num_vertices()), "{}", thinned.mesh.num_vertices());
+}
