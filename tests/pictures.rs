@@ -6,6 +6,7 @@ mod common;
 
 use assert_cmd::Command;
 use common::*;
+use lwc::mesh::{Domain, Semantic};
 use lwc::render::{Camera, Image, Shading, Style, Up, View, render};
 use lwc::{TriMesh, io};
 use std::io::Cursor;
@@ -185,7 +186,9 @@ fn describe_makes_pictures_and_coloured_meshes() {
     folder.ok("describe ball.ply -d pca -o heat.ply");
     let file = io::read(folder.path("heat.ply")).unwrap();
     assert_eq!(file.mesh, io::read(folder.path("ball.ply")).unwrap().mesh);
-    assert_eq!(file.report.ignored, ["vertex.red", "vertex.green", "vertex.blue"]);
+    let colours = file.attributes.find(Semantic::Color(0)).unwrap();
+    assert_eq!((colours.domain, colours.num_components), (Domain::Vertex, 3));
+    assert_eq!(colours.num_rows(), file.mesh.num_vertices());
     let output = folder.run("describe ball.ply -o heat.txt");
     assert_eq!(output.status.code(), Some(2));
 }

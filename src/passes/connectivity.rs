@@ -322,10 +322,9 @@ impl<'a> Walk<'a> {
     /// vertex after it, if that is there.
     fn seed_at(&self, corner: u32) -> u32 {
         let second = self.surface.vertex(corner) + 1;
-        let lefts = std::iter::successors(Some(corner), |&c| Some(self.surface.swing_left(c)));
-        let lefts = lefts.take_while(|&c| c != NO_CORNER);
-        let rights = std::iter::successors(Some(corner), |&c| Some(self.surface.swing_right(c)));
-        let rights = rights.take_while(|&c| c != NO_CORNER);
+        let there = |c: u32| (c != NO_CORNER).then_some(c);
+        let lefts = std::iter::successors(Some(corner), |&c| there(self.surface.swing_left(c)));
+        let rights = std::iter::successors(Some(corner), |&c| there(self.surface.swing_right(c)));
         let turn = |(i, c): (usize, u32)| (i == 0 || c != corner).then_some(c);
         let mut around = lefts.enumerate().map_while(turn).chain(rights.enumerate().map_while(turn));
         prev(around.find(|&c| self.surface.vertex(next(c)) == second).unwrap_or(corner))
