@@ -54,6 +54,15 @@ PARTS = {
         ("src/passes/coordinates.rs", r"contexts: \[\n[^\]]*\]", "contexts: [0, 0]"),
         ("src/passes/coordinates.rs", r"sign: 2 \* class \+ usize::from\(guess\.leans_down\)", "sign: 0"),
     ],
+    "Connectivity: whether patches fit the rule, as a context": [
+        ("src/passes/connectivity.rs", r"let fit = self\.grown_polygon\(beyond, passed\)\.fit\(self\.positions\);", "let fit = Fit::Unknown; let _ = passed;"),
+    ],
+    "Connectivity: holes closed in the reverse order of the walk": [
+        (PARTITION, r"order\.into_iter\(\)\.rev\(\)\.partition", "order.into_iter().partition"),
+    ],
+    "Selection: next to what is removed already": [
+        (PARTITION, r"const WEIGHT: f64 = 0\.7;", "const WEIGHT: f64 = 0.0;"),
+    ],
     "Schedule: precision that follows the error": [
         ("src/encoder/schedule.rs", r"let base_precision = if num_levels > 0 .*;", "let base_precision = precision;"),
     ],
@@ -67,7 +76,7 @@ PARTS = {
         (PARTITION, r"Some\(OUTLIER\)", "Some(OUTLIER).filter(|_| false)"),
     ],
     "Choice: holes closed close to the surface": [
-        (PARTITION, r"Some\(thinning\.tolerance\)", "Some(f64::INFINITY)"),
+        (PARTITION, r"&chosen, thinning\.tolerance", "&chosen, f64::INFINITY"),
     ],
 }
 
