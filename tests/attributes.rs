@@ -2,12 +2,14 @@
 #![cfg(feature = "io")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
+mod common;
+
+use common::corpus::corpus;
 use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, ReadError, WriteReport},
     mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values},
 };
-use std::path::{Path, PathBuf};
 
 fn obj(text: &str) -> Result<MeshFile, ReadError> {
     io::read_bytes(text.as_bytes(), Format::Obj)
@@ -323,17 +325,6 @@ fn attributes_that_do_not_fit_are_refused() {
 }
 
 // --- The corpus ----------------------------------------------------------------------------------------
-
-/// The test meshes, which are not part of the repository.
-fn corpus() -> Option<PathBuf> {
-    let named = std::env::var_os("LWC_CORPUS").map(PathBuf::from);
-    let found = named.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus"));
-    if found.is_dir() {
-        return Some(found);
-    }
-    eprintln!("skipped: no corpus at {}; set LWC_CORPUS", found.display());
-    None
-}
 
 #[test]
 fn corpus_attributes_survive_their_format() {

@@ -4,12 +4,13 @@
 mod common;
 
 use assert_cmd::Command;
+use common::corpus::corpus;
 use common::*;
 use lwc::descriptors::{Descriptor, Window, evaluate, mean_edge_length};
 use lwc::{TriMesh, io};
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Output, Stdio};
 use tempfile::TempDir;
 
@@ -664,17 +665,6 @@ fn a_broken_pipe_ends_quietly() {
 }
 
 // --- files of the corpus ---
-
-/// The public meshes, if they are at hand.
-fn corpus() -> Option<PathBuf> {
-    let named = std::env::var_os("LWC_CORPUS").map(PathBuf::from);
-    let found = named.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus"));
-    if found.is_dir() {
-        return Some(found);
-    }
-    eprintln!("skipped: no corpus at {}; set LWC_CORPUS", found.display());
-    None
-}
 
 #[test]
 fn hostile_files_encode_or_fail_with_one_sentence() {

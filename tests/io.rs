@@ -1,13 +1,16 @@
 //! Mesh files: round trips, what readers accept, and what they refuse without harm.
 #![cfg(feature = "io")]
 
+mod common;
+
+use common::corpus::corpus;
 use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, Place, ReadError, WriteError},
 };
 use std::{
     fs,
-    path::{Path, PathBuf},
+    path::Path,
     time::{Duration, Instant},
 };
 
@@ -523,17 +526,6 @@ fn damaged_zstd_is_refused() {
 }
 
 // --- The corpus ----------------------------------------------------------------------------------------
-
-/// The test meshes, which are not part of the repository.
-fn corpus() -> Option<PathBuf> {
-    let named = std::env::var_os("LWC_CORPUS").map(PathBuf::from);
-    let found = named.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus"));
-    if found.is_dir() {
-        return Some(found);
-    }
-    eprintln!("skipped: no corpus at {}; set LWC_CORPUS", found.display());
-    None
-}
 
 /// What must come of a file of `bad/`: vertices, triangles, polygons cut and faces skipped, or a refusal.
 enum Expected {

@@ -2,11 +2,14 @@
 #![cfg(feature = "las")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
+mod common;
+
+use common::corpus::corpus;
 use lwc::{
     io::{self, Format, MeshFile, Place, ReadError, TerrainOptions},
     mesh::{Attribute, Semantic, Values},
 };
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// x, y and z in steps, return number, number of returns, class.
 type Point = ([i32; 3], u8, u8, u8);
@@ -248,17 +251,6 @@ fn stored_files_are_read_alike() {
 }
 
 // --- The corpus ----------------------------------------------------------------------------------------
-
-/// The test meshes, which are not part of the repository.
-fn corpus() -> Option<PathBuf> {
-    let named = std::env::var_os("LWC_CORPUS").map(PathBuf::from);
-    let found = named.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus"));
-    if found.is_dir() {
-        return Some(found);
-    }
-    eprintln!("skipped: no corpus at {}; set LWC_CORPUS", found.display());
-    None
-}
 
 #[test]
 fn a_real_scan_is_the_surface_that_others_make_of_it() {

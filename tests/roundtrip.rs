@@ -159,18 +159,15 @@ fn the_quantiser_of_these_tests_rounds_halves_up() {
 #[cfg(feature = "io")]
 mod corpus {
     use super::*;
-    use std::path::{Path, PathBuf};
+    use common::corpus::corpus;
+    use std::path::PathBuf;
 
     /// Larger meshes take part in optimised builds only.
     const LARGE: usize = 100_000;
 
     fn files(folder: &str) -> Vec<PathBuf> {
-        let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus");
-        let corpus = std::env::var_os("LWC_CORPUS").map_or(beside, PathBuf::from);
-        let Ok(entries) = std::fs::read_dir(corpus.join(folder)) else {
-            println!("skipped: no corpus at {}", corpus.display());
-            return Vec::new();
-        };
+        let Some(corpus) = corpus() else { return Vec::new() };
+        let entries = std::fs::read_dir(corpus.join(folder)).unwrap();
         let mut files: Vec<PathBuf> = entries
             .map(|entry| entry.unwrap().path())
             .filter(|path| lwc::io::Format::from_path(path).is_some())

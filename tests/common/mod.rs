@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod chunks;
+pub mod corpus;
 #[cfg(feature = "encoder")]
 pub mod exact;
 pub mod kinds;
