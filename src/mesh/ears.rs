@@ -64,7 +64,7 @@ impl Bytes {
     }
 }
 
-/// How long a cut is, squared.
+/// How far two cells are apart, squared: the length of a cut.
 #[inline(always)]
 pub(crate) fn squared_distance(p: [i32; 3], q: [i32; 3]) -> f32 {
     let [x, y, z] = std::array::from_fn(|i| q[i].wrapping_sub(p[i]) as f32);

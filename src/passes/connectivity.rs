@@ -10,7 +10,7 @@ use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
 use crate::lanes::Lanes;
 use crate::mesh::Surface;
-use crate::mesh::ears::MAX_VALENCE;
+use crate::mesh::ears::{MAX_VALENCE, squared_distance};
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use std::collections::{HashMap, VecDeque};
 
@@ -532,11 +532,6 @@ fn fit_of(growth: Option<Growth>) -> Fit {
 /// `value − first` clamped to 0..8.
 fn bucket(value: i32, first: i32) -> usize {
     (value - first).clamp(0, 7) as usize
-}
-
-fn squared_distance(p: [i32; 3], q: [i32; 3]) -> f32 {
-    let d = Lanes::between(p, q);
-    d.dot3(d)
 }
 
 /// x / (x + y) in `levels` equal steps; the middle if both vanish.

@@ -85,9 +85,7 @@ impl Polygon {
         }
         Fit::Is
     }
-}
 
-impl Polygon {
     /// The same for two triangles, which is asked most: their ears are two opposite corners.
     #[inline]
     fn fit_of_quad(&self, positions: &[[i32; 3]]) -> Fit {
