@@ -5,7 +5,7 @@ use super::edit::EditError;
 use crate::decoder::{Decoder, PassKind};
 use crate::descent::{Descent, Settings};
 use crate::descriptors;
-use crate::encoder::quantise::quantise;
+use crate::encoder::quantise::{LEGALITY_BITS, quantise};
 use crate::levels::Level;
 use crate::limits::Limits;
 use crate::mesh::Surface;
@@ -13,8 +13,6 @@ use crate::mesh::repair::{Repaired, repair};
 use crate::partition::{Geometry, Optimize};
 use crate::{EncodeError, TriMesh};
 
-/// Bits of the grid on which the sides of faces are compared.
-const LEGALITY_BITS: u32 = 30;
 /// Triangles of M^0 … M^L. M^k has the vertices below its number.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tower {

@@ -4,6 +4,10 @@
 use crate::bitstream::header::Grid;
 use crate::{EncodeError, TriMesh};
 
+/// Bits of a grid that is finer than float32, on which the sides of faces are compared where no stream sets
+/// a grid.
+pub(crate) const LEGALITY_BITS: u32 = 30;
+
 /// The vertices of a surface, on the grid and off it.
 pub(crate) struct Model {
     pub(crate) grid: Grid,

@@ -22,7 +22,7 @@ mod noise;
 pub use noise::Noise;
 
 use crate::descriptors::{self, Descriptor, Readings, Window};
-use crate::encoder::quantise::quantise;
+use crate::encoder::quantise::{LEGALITY_BITS, quantise};
 use crate::levels::Level;
 use crate::mesh::Surface;
 use crate::mesh::repair::{RepairReport, Repaired, repair};
@@ -32,9 +32,6 @@ use crate::{EncodeError, TriMesh};
 use apd::average_plane_distance;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
-
-/// Bits of the grid on which the sides of faces are compared; exact there, and finer than float32.
-const LEGALITY_BITS: u32 = 30;
 
 /// How Algorithm 1 is repeated. The defaults are the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
