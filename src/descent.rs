@@ -1,6 +1,6 @@
 //! From M^L down: level by level the descriptor ranks the vertices and the partition removes the odd ones.
 
-use crate::descriptors::{self, Descriptor, Window};
+use crate::descriptors::{self, Descriptor, Features, Window};
 use crate::levels::Level;
 use crate::mesh::Surface;
 use crate::partition::{Geometry, Optimize, Partition, remove_level};
@@ -34,6 +34,8 @@ pub(crate) struct Settings {
 pub(crate) struct Descent<'a> {
     settings: Settings,
     geometry: Geometry<'a>,
+    /// Of all vertices, if the descriptor is to see them.
+    features: Option<Features>,
     /// l̄ of the finest level, in the units of the geometry.
     mean_edge: f64,
     shrinking: ShrinkingSurface,
@@ -50,7 +52,13 @@ impl<'a> Descent<'a> {
         let anchors = Anchors::new(&surface);
         let shrinking = ShrinkingSurface::new(surface);
         let level = Level::collect(&shrinking);
-        Self { settings, geometry, mean_edge, shrinking, memory, anchors, level, depth: 0, is_over: false }
+        let (features, depth, is_over) = (None, 0, false);
+        Self { settings, geometry, features, mean_edge, shrinking, memory, anchors, level, depth, is_over }
+    }
+
+    /// The same with attributes that the descriptor sees, which must be one that can.
+    pub(crate) fn with_features(self, features: Option<Features>) -> Self {
+        Self { features, ..self }
     }
 
     /// What has not been removed yet.
@@ -100,8 +108,13 @@ impl<'a> Descent<'a> {
             return Vec::new();
         }
         let mean_edge = self.mean_edge;
+        let features = self.features.as_ref().map(|features| features.of_vertices(&self.level.vertices));
         self.level.with_mesh(self.geometry.positions, |mesh| {
-            descriptors::evaluate(descriptor, mesh, &window, mean_edge)
+            let augmented = features.and_then(|features| {
+                let see_all = descriptors::evaluate_with_features;
+                see_all(descriptor, mesh, &features, &window, mean_edge, &|_| ()).ok()
+            });
+            augmented.unwrap_or_else(|| descriptors::evaluate(descriptor, mesh, &window, mean_edge))
         })
     }
 }

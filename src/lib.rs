@@ -33,6 +33,7 @@ mod partition;
 mod passes;
 #[cfg(feature = "render")]
 pub mod render;
+mod scene;
 #[cfg(feature = "encoder")]
 mod simplify;
 

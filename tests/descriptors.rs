@@ -7,7 +7,11 @@ mod oracle;
 
 use common::*;
 use lwc::TriMesh;
-use lwc::descriptors::{Descriptor, Window, evaluate, evaluate_with_progress, mean_edge_length};
+use lwc::descriptors::{
+    Descriptor, Features, FeaturesError, Window, evaluate, evaluate_with_features, evaluate_with_progress,
+    mean_edge_length,
+};
+use lwc::mesh::{Attribute, Domain, Semantic, Values};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn window(rings: u32, radius: f64) -> Window {
@@ -361,4 +365,69 @@ fn names_parse_back() {
     }
     assert!("harris".parse::<Descriptor>().unwrap_err().to_string().contains("`harris`"));
     assert_eq!(Descriptor::default(), Descriptor::Harris3d);
+}
+
+/// Two components per vertex, with a range of 1 in the wider.
+fn shades(mesh: &TriMesh, shade: impl Fn([f64; 3]) -> [f64; 2]) -> Attribute {
+    let values = mesh.positions().iter().flat_map(|&p| shade(p)).collect();
+    Attribute::new("shade", Semantic::Generic, Domain::Vertex, 2, Values::F64(values))
+}
+
+fn with_shades(descriptor: Descriptor, mesh: &TriMesh, shade: &Attribute, weight: f64) -> Vec<f64> {
+    let features = Features::new(mesh, &[(shade, weight)]).unwrap();
+    let mean_edge = mean_edge_length(mesh);
+    evaluate_with_features(descriptor, mesh, &features, &Window::default(), mean_edge, &|_| ()).unwrap()
+}
+
+#[test]
+fn attributes_of_no_weight_change_nothing() {
+    let mesh = noisy(sphere(3), 1, 0.03);
+    let shade = shades(&mesh, |[x, y, _]| [x.sin(), x * y]);
+    for descriptor in [Descriptor::Pca, Descriptor::PcaQem] {
+        let augmented = with_shades(descriptor, &mesh, &shade, 0.0);
+        assert_close(&augmented, &values(descriptor, &mesh), AGREEMENT, descriptor.name());
+    }
+}
+
+#[test]
+fn oracle_agrees_in_five_dimensions() {
+    let mesh = noisy(grid(17, 15, |x, y| 0.05 * x * y), 3, 0.1);
+    let mut shade = shades(&mesh, |[x, y, z]| [(3.0 * x).sin(), z - y]);
+    let range = |k: usize| {
+        let column = |v: usize| shade.number(v, k).unwrap();
+        let all = || (0..mesh.num_vertices()).map(column);
+        all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min)
+    };
+    let scale = 1.0 / range(0).max(range(1));
+    if let Values::F64(values) = &mut shade.values {
+        values.iter_mut().for_each(|value| *value *= scale);
+    }
+    let weight = 4.0;
+    let further: Vec<[f64; 2]> =
+        (0..mesh.num_vertices()).map(|v| [0, 1].map(|k| weight * shade.number(v, k).unwrap())).collect();
+    let window = Window::default();
+    for descriptor in [Descriptor::Pca, Descriptor::PcaQem] {
+        let expected =
+            oracle::evaluate_augmented(descriptor, &mesh, &further, &window, mean_edge_length(&mesh));
+        let found = with_shades(descriptor, &mesh, &shade, weight);
+        assert_close(&found, &expected, AGREEMENT, descriptor.name());
+    }
+}
+
+#[test]
+fn an_edge_of_colour_is_salient_on_a_plane() {
+    let mesh = grid(21, 21, |_, _| 0.0);
+    let shade = shades(&mesh, |[x, _, _]| [f64::from(x > 0.5), 0.0]);
+    let at = |x: f64| mesh.positions().iter().position(|p| p[0] == x && p[1] == 0.0).unwrap();
+    let pca = with_shades(Descriptor::Pca, &mesh, &shade, 10.0);
+    assert!(pca[at(0.0)] > 0.01 && pca[at(1.0)] > 0.01 && pca[at(-6.0)] < 1e-12, "{pca:?}");
+    // Where more varies, its metric is shorter; away from the edge nothing does.
+    let pca_qem = with_shades(Descriptor::PcaQem, &mesh, &shade, 10.0);
+    let without = values(Descriptor::PcaQem, &mesh);
+    assert_close(&[pca_qem[at(-6.0)]], &[without[at(-6.0)]], AGREEMENT, "away");
+    assert!((pca_qem[at(0.0)] / without[at(0.0)] - 1.0).abs() > 0.1);
+    let features = Features::new(&mesh, &[(&shade, 1.0)]).unwrap();
+    let harris =
+        evaluate_with_features(Descriptor::Harris3d, &mesh, &features, &Window::default(), 1.0, &|_| ());
+    assert_eq!(harris, Err(FeaturesError::Descriptor { descriptor: Descriptor::Harris3d }));
 }

@@ -296,6 +296,46 @@ fn instances_are_kept_or_merged_in_their_places() {
 }
 
 #[test]
+fn scenes_are_written_in_their_places() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let primitives = json!([{ "attributes": { "POSITION": position }, "material": 0 }]);
+    let document = model.document(json!({
+        "meshes": [{ "name": "m", "primitives": primitives }, { "primitives": primitives }],
+        "materials": [{ "name": "stone" }],
+        "nodes": [
+            { "children": [1], "rotation": [0, 0, 0.38268343236, 0.92387953251], "scale": [3, 1, -1] },
+            { "mesh": 0, "name": "sheared", "rotation": [0, 0, 0.38268343236, 0.92387953251] },
+            { "mesh": 1, "translation": [1, 2, 3] },
+        ],
+        "scenes": [{ "nodes": [0, 2] }],
+    }));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.gltf");
+    fs::write(&path, document.to_string()).unwrap();
+    let scene = io::read_scene(&path).unwrap();
+    for ending in ["glb", "gltf"] {
+        let copy = folder.path().join("copy").with_extension(ending);
+        assert_eq!(io::write_scene(&copy, &scene).unwrap(), io::WriteReport::default());
+        let again = io::read_scene(&copy).unwrap();
+        assert_eq!(again.meshes.len(), 2);
+        for (a, b) in again.meshes.iter().zip(&scene.meshes) {
+            assert_eq!((&a.mesh, &a.attributes), (&b.mesh, &b.attributes));
+        }
+        assert_eq!(again.instances.len(), 2);
+        for (a, b) in again.instances.iter().zip(&scene.instances) {
+            assert_eq!((a.mesh, &a.name), (b.mesh, &b.name));
+            let pairs = a.transform.as_flattened().iter().zip(b.transform.as_flattened());
+            pairs.for_each(|(a, b)| assert!((a - b).abs() < 1e-9, "{:?} {:?}", a, b));
+        }
+    }
+    // In one mesh elsewhere.
+    let merged = folder.path().join("merged.ply");
+    io::write_scene(&merged, &scene).unwrap();
+    assert_eq!(io::read(&merged).unwrap().mesh.num_vertices(), 6);
+}
+
+#[test]
 fn scenes_that_are_no_trees_are_refused() {
     let model = Model::default();
     let read = |nodes: Value, roots: Value| {

@@ -3,7 +3,7 @@
 use super::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Parser, Subcommand, value_parser};
-use lwc::descriptors::{Descriptor, Window};
+use lwc::descriptors::{Descriptor, FeatureChoice, Window};
 use lwc::io::TerrainOptions;
 use lwc::{EncodeOptions, Limits, Optimize, Partition};
 use std::path::PathBuf;
@@ -144,6 +144,12 @@ pub struct Scale {
     #[arg(short, long, value_name = "NAME", default_value_t = Descriptor::default())]
     #[arg(value_parser = descriptor_parser())]
     pub descriptor: Descriptor,
+    /// Attributes that the descriptor sees beside positions: `pca` and `pca-qem` work in any dimension.
+    ///
+    /// `color`, `uv`, `normal` or the name of an attribute, separated by commas, each with `:WEIGHT` if its whole
+    /// range is to count like another number of mean edges than 10.
+    #[arg(long, value_name = "NAME[:WEIGHT],…", value_delimiter = ',')]
+    pub descriptor_attributes: Vec<FeatureChoice>,
     #[command(flatten)]
     pub window: WindowArgs,
 }

@@ -7,7 +7,8 @@ use super::output::Destination;
 use super::render::{has_ending, heat_picture};
 use super::ui::Ui;
 use anyhow::Context;
-use lwc::descriptors::{evaluate_with_progress, mean_edge_length};
+use lwc::descriptors::{Features, evaluate_with_features, evaluate_with_progress, mean_edge_length};
+use lwc::io::MeshFile;
 use lwc::render::{Heat, sequential};
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,7 +20,8 @@ pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
     let is_text = matches!(Kind::of(&destination), Some(Kind::Table));
     destination.check(Some(&args.input), is_text)?;
 
-    let mesh = read_mesh(&args.input, ui)?.mesh;
+    let MeshFile { mesh, attributes, .. } = read_mesh(&args.input, ui)?;
+    let choices = &args.scale.descriptor_attributes;
     let mean_edge = mean_edge_length(&mesh);
     let values = {
         let bar = ui.bar(args.scale.descriptor.name());
@@ -28,13 +30,16 @@ pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             bar.set(done as f64 / mesh.num_vertices().max(1) as f64);
         };
-        evaluate_with_progress(
-            args.scale.descriptor,
-            &mesh,
-            &args.scale.window.window(),
-            mean_edge,
-            &progress,
-        )
+        let (descriptor, window) = (args.scale.descriptor, args.scale.window.window());
+        if choices.is_empty() {
+            evaluate_with_progress(descriptor, &mesh, &window, mean_edge, &progress)
+        } else {
+            Features::choose(&mesh, &attributes, choices)
+                .and_then(|features| {
+                    evaluate_with_features(descriptor, &mesh, &features, &window, mean_edge, &progress)
+                })
+                .with_context(|| args.input.display().to_string())?
+        }
     };
     ui.detail(&args.input.display().to_string(), &format!("mean edge length {mean_edge}"));
     match Kind::of(&destination) {

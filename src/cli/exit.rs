@@ -2,6 +2,7 @@
 
 use super::ui::Ui;
 use lwc::decomposition::EditError;
+use lwc::descriptors::FeaturesError;
 use lwc::io::{ReadError, WriteError};
 use lwc::{DecodeError, EncodeError};
 use std::io;
@@ -74,6 +75,7 @@ fn code(error: &anyhow::Error) -> u8 {
             EncodeError::TooLarge(_) => LIMIT,
             _ => INPUT,
         }))
+        .or(cause.downcast_ref::<FeaturesError>().map(|_| USAGE))
         .or(cause.downcast_ref().map(|error| match error {
             WriteError::UnknownEnding => USAGE,
             _ => OTHER,

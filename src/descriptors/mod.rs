@@ -18,7 +18,9 @@ use thiserror::Error;
 use crate::mesh::TriMesh;
 
 mod adjacency;
+mod augmented;
 mod casorati;
+mod features;
 mod harris3d;
 mod locality;
 mod nfv;
@@ -34,6 +36,7 @@ mod surface;
 pub(crate) mod symmetric;
 mod window;
 
+pub use features::{FeatureChoice, Features, FeaturesError, MAX_FEATURES};
 pub use readings::{NormalWeights, PcaQuadric, Readings};
 pub use window::Window;
 
@@ -152,21 +155,59 @@ pub fn evaluate_reading(
     readings: Readings,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Vec<f64> {
+    let surface = prepare(mesh, window, mean_edge, readings.normals);
+    evaluate_prepared(mesh, surface, progress, |surface| match descriptor {
+        Descriptor::Pca => pca::evaluate(surface, window, progress),
+        Descriptor::Nfv => nfv::evaluate(surface, window, progress),
+        Descriptor::Casorati => casorati::evaluate(surface, window, progress),
+        Descriptor::ShapeIndex => shape_index::evaluate(surface, window, progress),
+        Descriptor::Harris3d => harris3d::evaluate(surface, window, progress),
+        Descriptor::Sqem => sqem::evaluate(surface, window, progress),
+        Descriptor::PcaQem => pca_qem::evaluate(surface, window, readings.pca_quadric, progress),
+    })
+}
+
+/// As [`evaluate_with_progress`], of vertices with attributes: `features` has one row per vertex of `mesh`.
+///
+/// # Errors
+/// If `descriptor` is neither [`Descriptor::Pca`] nor [`Descriptor::PcaQem`].
+///
+/// # Panics
+/// If `features` was made for fewer vertices.
+pub fn evaluate_with_features(
+    descriptor: Descriptor,
+    mesh: &TriMesh,
+    features: &Features,
+    window: &Window,
+    mean_edge: f64,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Vec<f64>, FeaturesError> {
+    let evaluate = match descriptor {
+        Descriptor::Pca => augmented::variation,
+        Descriptor::PcaQem => augmented::pca_qem,
+        _ => return Err(FeaturesError::Descriptor { descriptor }),
+    };
+    let prepared = prepare(mesh, window, mean_edge, NormalWeights::default());
+    Ok(evaluate_prepared(mesh, prepared, progress, |surface| evaluate(surface, features, window, progress)))
+}
+
+/// `None` where every value is 0.
+fn prepare(mesh: &TriMesh, window: &Window, mean_edge: f64, normals: NormalWeights) -> Option<Surface> {
     let usable = window.radius > 0.0 && mean_edge > 0.0 && mean_edge.is_finite();
-    let Some(surface) = usable.then(|| Surface::new(mesh, mean_edge, readings.normals)).flatten() else {
+    usable.then(|| Surface::new(mesh, mean_edge, normals)).flatten()
+}
+
+fn evaluate_prepared(
+    mesh: &TriMesh,
+    surface: Option<Surface>,
+    progress: &(dyn Fn(usize) + Sync),
+    evaluate: impl FnOnce(&Surface) -> Vec<f64>,
+) -> Vec<f64> {
+    let Some(surface) = surface else {
         progress(mesh.num_vertices());
         return vec![0.0; mesh.num_vertices()];
     };
-    let values = match descriptor {
-        Descriptor::Pca => pca::evaluate(&surface, window, progress),
-        Descriptor::Nfv => nfv::evaluate(&surface, window, progress),
-        Descriptor::Casorati => casorati::evaluate(&surface, window, progress),
-        Descriptor::ShapeIndex => shape_index::evaluate(&surface, window, progress),
-        Descriptor::Harris3d => harris3d::evaluate(&surface, window, progress),
-        Descriptor::Sqem => sqem::evaluate(&surface, window, progress),
-        Descriptor::PcaQem => pca_qem::evaluate(&surface, window, readings.pca_quadric, progress),
-    };
-    let mut values = surface.in_mesh_order(&values);
+    let mut values = surface.in_mesh_order(&evaluate(&surface));
     for value in &mut values {
         // Also turns −0 and NaN into +0: only windows far beyond any sensible radius could make a NaN.
         *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };
@@ -178,9 +219,7 @@ pub fn evaluate_reading(
 ///
 /// `window` and `mean_edge` as in [`evaluate`]; 0 where that gives zeros. Runs on the current rayon pool.
 pub fn mean_window_size(mesh: &TriMesh, window: &Window, mean_edge: f64) -> f64 {
-    let usable = window.radius > 0.0 && mean_edge > 0.0 && mean_edge.is_finite();
-    let Some(surface) = usable.then(|| Surface::new(mesh, mean_edge, NormalWeights::default())).flatten()
-    else {
+    let Some(surface) = prepare(mesh, window, mean_edge, NormalWeights::default()) else {
         return 0.0;
     };
     let sizes = window::map_windows(&surface, window, &|_| (), |local| local.len());

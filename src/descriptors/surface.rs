@@ -71,6 +71,11 @@ impl Surface {
         self.vertices.len()
     }
 
+    /// The vertex of the mesh.
+    pub(super) fn mesh_vertex(&self, vertex: u32) -> usize {
+        self.mesh_vertices[vertex as usize] as usize
+    }
+
     /// Puts one value per vertex back into the order of the mesh.
     pub(super) fn in_mesh_order(&self, values: &[f64]) -> Vec<f64> {
         let mut ordered = vec![0.0; values.len()];

@@ -29,12 +29,14 @@ mod stl;
 mod text;
 mod texture;
 
+#[cfg(feature = "gltf")]
+pub use crate::mesh::Instance;
 pub use atomic::write_atomic;
 pub use error::{Place, ReadError, WriteError};
 #[cfg(feature = "las")]
 pub use las::TerrainOptions;
 #[cfg(feature = "gltf")]
-pub use scene::{Instance, Scene};
+pub use scene::{SCENE_MESH, Scene};
 
 use crate::mesh::{Attribute, Attributes, Domain, Semantic, TriMesh, Values};
 use std::{
@@ -309,21 +311,54 @@ pub fn write_with_attributes(
     mesh: &TriMesh,
     attributes: &Attributes,
 ) -> Result<WriteReport, WriteError> {
-    let path = path.as_ref();
+    write_file(path.as_ref(), |out, format| write_with_attributes_to(out, mesh, attributes, format))
+}
+
+/// Writes a file by its ending, complete or not at all.
+fn write_file(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write, Format) -> Result<WriteReport, WriteError>,
+) -> Result<WriteReport, WriteError> {
     let known = format_and_compression(path).filter(|(format, _)| format.is_written());
     let (format, is_compressed) = known.ok_or(WriteError::UnknownEnding)?;
     let mut report = WriteReport::default();
     write_atomic(path, |out| {
         if is_compressed {
             let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
-            report = write_with_attributes_to(&mut compressor, mesh, attributes, format)?;
+            report = write(&mut compressor, format)?;
             compressor.finish()?;
         } else {
-            report = write_with_attributes_to(out, mesh, attributes, format)?;
+            report = write(out, format)?;
         }
         Ok::<(), WriteError>(())
     })?;
     Ok(report)
+}
+
+/// Writes the meshes of a scene in their places, as glTF; in other formats, merged (see [`Scene::merge`]).
+///
+/// # Errors
+/// As [`write_with_attributes`], and if the merged mesh is too large.
+#[cfg(feature = "gltf")]
+pub fn write_scene(path: impl AsRef<Path>, scene: &Scene) -> Result<WriteReport, WriteError> {
+    write_file(path.as_ref(), |mut out, format| write_scene_to(&mut out, scene, format))
+}
+
+/// As [`write_scene`], uncompressed.
+///
+/// # Errors
+/// As [`write_scene`].
+#[cfg(feature = "gltf")]
+pub fn write_scene_to(mut out: impl Write, scene: &Scene, format: Format) -> Result<WriteReport, WriteError> {
+    match format {
+        Format::Glb => gltf::write_scene(&mut out, scene, gltf::Container::Glb),
+        Format::Gltf => gltf::write_scene(&mut out, scene, gltf::Container::Text),
+        _ => {
+            let too_large = |error: ReadError| WriteError::Unrepresentable { message: error.to_string() };
+            let MeshFile { mesh, attributes, .. } = scene.clone().merge().map_err(too_large)?;
+            write_with_attributes_to(out, &mesh, &attributes, format)
+        }
+    }
 }
 
 /// Writes `mesh` in `format`, uncompressed. Writes are small: pass a buffered writer.

@@ -5,6 +5,7 @@ mod build;
 pub(crate) mod ears;
 #[cfg(feature = "encoder")]
 pub(crate) mod repair;
+mod scene;
 pub(crate) mod surface;
 mod tri_mesh;
 #[cfg(any(feature = "encoder", feature = "metrics"))]
@@ -13,5 +14,6 @@ pub(crate) mod triangle;
 pub use attribute::{
     Attribute, AttributeError, Attributes, Domain, MAX_COMPONENTS, NO_ROW, ScalarType, Semantic, Values,
 };
+pub use scene::{IDENTITY, Instance, SceneTable};
 pub(crate) use surface::Surface;
 pub use tri_mesh::{MeshError, TriMesh};

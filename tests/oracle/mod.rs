@@ -54,6 +54,65 @@ pub fn evaluate(descriptor: Descriptor, mesh: &TriMesh, window: &Window, mean_ed
     }
 }
 
+/// PCA and PCA-QEM with two more coordinates per vertex, in units of l̄.
+pub fn evaluate_augmented(
+    descriptor: Descriptor,
+    mesh: &TriMesh,
+    further: &[[f64; 2]],
+    window: &Window,
+    mean_edge: f64,
+) -> Vec<f64> {
+    let oracle = Oracle::new(mesh, window, mean_edge);
+    let point = |u: usize, origin: usize| {
+        let d = oracle.offset(u, origin);
+        DVector::from_vec(vec![d[0], d[1], d[2], further[u][0], further[u][1]])
+    };
+    let eigen = |v: usize| {
+        let members = oracle.window(v);
+        let mean = members.iter().map(|&u| point(u, v)).sum::<DVector<f64>>() / members.len() as f64;
+        let centred = members.iter().map(|&u| point(u, v) - &mean);
+        SymmetricEigen::new(centred.map(|d| &d * d.transpose()).sum::<DMatrix<f64>>())
+    };
+    let metrics: Vec<DMatrix<f64>> = (0..mesh.num_vertices())
+        .map(|v| {
+            let eigen = eigen(v);
+            let alphas = eigen.eigenvalues.map(|value| 1.0 / (1.0 + value.max(0.0)));
+            let scale = DMatrix::from_diagonal(&alphas.component_mul(&alphas));
+            &eigen.eigenvectors * scale * eigen.eigenvectors.transpose()
+        })
+        .collect();
+    let quadric = |u: usize, v: usize| {
+        let (m, p) = (&metrics[u], point(u, v));
+        let b = -(m * &p);
+        let mut q = m.clone().insert_row(5, 0.0).insert_column(5, 0.0);
+        for i in 0..5 {
+            (q[(i, 5)], q[(5, i)]) = (b[i], b[i]);
+        }
+        q[(5, 5)] = p.dot(&(m * &p));
+        q
+    };
+    let value = |v: usize| match descriptor {
+        Descriptor::Pca => {
+            let mut values: Vec<f64> = eigen(v).eigenvalues.iter().map(|value| value.max(0.0)).collect();
+            values.sort_by(f64::total_cmp);
+            (values[0] + values[1] + values[2]) / values.iter().sum::<f64>()
+        }
+        _ => {
+            let members = oracle.window(v);
+            let weights: Vec<f64> = members.iter().map(|&u| oracle.weight(u, v)).collect();
+            let sum: f64 = weights.iter().sum();
+            let mean =
+                members.iter().zip(&weights).map(|(&u, &w)| quadric(u, v) * w).sum::<DMatrix<f64>>() / sum;
+            let errors = members.iter().zip(&weights).map(|(&u, &w)| {
+                let x = point(u, v).insert_row(5, 1.0);
+                w * x.dot(&(&mean * &x))
+            });
+            errors.sum::<f64>() / sum
+        }
+    };
+    (0..mesh.num_vertices()).map(value).collect()
+}
+
 fn positions(mesh: &TriMesh) -> Vec<V> {
     mesh.positions().iter().map(|&p| V::from(p)).collect()
 }

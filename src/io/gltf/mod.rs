@@ -8,10 +8,11 @@ mod accessor;
 mod json;
 mod mesh;
 mod nodes;
+mod places;
 mod source;
 mod write;
 
-pub(super) use write::{Container, write};
+pub(super) use write::{Container, write, write_scene};
 
 use super::{Place, ReadError, Scene};
 use accessor::Store;

@@ -1,12 +1,13 @@
 //! The nodes of a scene: which mesh is where.
 
 use super::json::{Document, Node};
-use crate::io::{Instance, Place, ReadError, ReadReport};
+use crate::{
+    io::{Place, ReadError, ReadReport},
+    mesh::{IDENTITY, Instance},
+};
 
 /// An affine map: three rows of a 3 × 3 matrix and a translation.
 pub(super) type Transform = [[f64; 4]; 3];
-
-pub(super) const IDENTITY: Transform = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
 /// The instances of the scene that is to be shown, in the order of a walk over the nodes; of all meshes
 /// where they are if there is no scene.

@@ -1,12 +1,16 @@
-//! Writing glTF 2.0: one mesh, one primitive for each material, one buffer.
+//! Writing glTF 2.0: one primitive for each material of a mesh, one buffer.
 
+use super::places::Nodes;
 use crate::{
-    io::{WriteError, WriteReport, texture::oriented},
+    io::{Scene, WriteError, WriteReport, texture::oriented},
     mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, TriMesh, Values},
 };
 use base64::Engine;
 use serde_json::{Value, json};
-use std::{collections::HashMap, io::Write};
+use std::{
+    collections::{HashMap, HashSet},
+    io::Write,
+};
 
 /// What holds document and buffer together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,64 +32,42 @@ pub(in crate::io) fn write(
     attributes: &Attributes,
     container: Container,
 ) -> Result<WriteReport, WriteError> {
-    let unrepresentable = |message: String| WriteError::Unrepresentable { message };
     if mesh.num_triangles() == 0 {
         return Err(unrepresentable("glTF has no meshes without triangles".to_owned()));
     }
-    if let Some(vertex) = mesh.positions().iter().position(|p| p.iter().any(|&c| (c as f32).is_infinite())) {
-        let message = format!("vertex {} is too far away for the float32 coordinates of glTF", vertex + 1);
-        return Err(unrepresentable(message));
-    }
-    let (columns, mut report) = columns(attributes);
-    let split = Split::new(mesh, &columns)?;
     let mut writer = Writer::default();
-    let positions = split.sources.iter().flat_map(|&v| mesh.positions()[v as usize].map(|c| c as f32));
-    let positions: Vec<f32> = positions.collect();
-    let mut named = serde_json::Map::new();
-    named.insert("POSITION".to_owned(), writer.positions(&positions).into());
-    for (k, column) in columns.iter().enumerate() {
-        let rows: Vec<u32> = split.rows.iter().skip(k).step_by(columns.len()).copied().collect();
-        if rows.contains(&NO_ROW) {
-            report.zeroed.push(column.name.to_owned());
-        }
-        named.insert(column.gltf_name.clone(), writer.column(column, &rows).into());
-    }
-    let (primitives, materials) = writer.primitives(attributes, &split.triangles, named.into());
+    writer.mesh(mesh, attributes)?;
+    writer.finish(out, json!([{ "mesh": 0 }]), &[0], container)
+}
 
-    let Writer { mut buffer, views, accessors } = writer;
-    let mut document = json!({
-        "asset": { "version": "2.0", "generator": "lwc" },
-        "scene": 0,
-        "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "mesh": 0 }],
-        "meshes": [{ "primitives": primitives }],
-        "buffers": [{ "byteLength": buffer.len() }],
-        "bufferViews": views,
-        "accessors": accessors,
-    });
-    if !materials.is_empty() {
-        document["materials"] = materials.into();
+/// Writes the meshes of a scene, those without triangles left out, each in its places.
+pub(in crate::io) fn write_scene(
+    out: &mut impl Write,
+    scene: &Scene,
+    container: Container,
+) -> Result<WriteReport, WriteError> {
+    let mut writer = Writer::default();
+    let mut written = vec![None; scene.meshes.len()];
+    for (file, index) in scene.meshes.iter().zip(&mut written) {
+        if file.mesh.num_triangles() > 0 {
+            *index = Some(writer.mesh(&file.mesh, &file.attributes)?);
+        }
     }
-    if container == Container::Text {
-        let data = base64::engine::general_purpose::STANDARD.encode(&buffer);
-        document["buffers"][0]["uri"] = format!("data:application/octet-stream;base64,{data}").into();
-        out.write_all(document.to_string().as_bytes())?;
-        return Ok(report);
+    if writer.meshes.is_empty() {
+        return Err(unrepresentable("glTF has no meshes without triangles".to_owned()));
     }
-    let mut text = document.to_string().into_bytes();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    buffer.resize(buffer.len().next_multiple_of(4), 0);
-    let length = u32::try_from(12 + 8 + text.len() + 8 + buffer.len());
-    let length = length.map_err(|_| unrepresentable("more than 4 GiB are too much for GLB".to_owned()))?;
-    out.write_all(b"glTF\x02\0\0\0")?;
-    out.write_all(&length.to_le_bytes())?;
-    out.write_all(&(text.len() as u32).to_le_bytes())?;
-    out.write_all(b"JSON")?;
-    out.write_all(&text)?;
-    out.write_all(&(buffer.len() as u32).to_le_bytes())?;
-    out.write_all(b"BIN\0")?;
-    out.write_all(&buffer)?;
-    Ok(report)
+    let mut nodes = Nodes::default();
+    for instance in &scene.instances {
+        if let Some(mesh) = written.get(instance.mesh).copied().flatten() {
+            nodes.add(instance, mesh);
+        }
+    }
+    let Nodes { list, roots } = nodes;
+    writer.finish(out, list.into(), &roots, container)
+}
+
+fn unrepresentable(message: String) -> WriteError {
+    WriteError::Unrepresentable { message }
 }
 
 /// An attribute as it is written.
@@ -260,9 +242,92 @@ struct Writer {
     buffer: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
+    meshes: Vec<Value>,
+    materials: Vec<Value>,
+    /// Materials are told apart by their names.
+    material_of: HashMap<String, usize>,
+    report: WriteReport,
 }
 
 impl Writer {
+    /// Adds a mesh that has triangles, and says which it is.
+    fn mesh(&mut self, mesh: &TriMesh, attributes: &Attributes) -> Result<usize, WriteError> {
+        let is_far = |p: &[f64; 3]| p.iter().any(|&c| (c as f32).is_infinite());
+        if let Some(vertex) = mesh.positions().iter().position(is_far) {
+            let message =
+                format!("vertex {} is too far away for the float32 coordinates of glTF", vertex + 1);
+            return Err(unrepresentable(message));
+        }
+        let (columns, report) = columns(attributes);
+        self.report.ignored.extend(report.ignored);
+        let split = Split::new(mesh, &columns)?;
+        let positions = split.sources.iter().flat_map(|&v| mesh.positions()[v as usize].map(|c| c as f32));
+        let positions: Vec<f32> = positions.collect();
+        let mut named = serde_json::Map::new();
+        named.insert("POSITION".to_owned(), self.positions(&positions).into());
+        for (k, column) in columns.iter().enumerate() {
+            let rows: Vec<u32> = split.rows.iter().skip(k).step_by(columns.len()).copied().collect();
+            if rows.contains(&NO_ROW) {
+                self.report.zeroed.push(column.name.to_owned());
+            }
+            named.insert(column.gltf_name.clone(), self.column(column, &rows).into());
+        }
+        let primitives = self.primitives(attributes, &split.triangles, named.into());
+        self.meshes.push(json!({ "primitives": primitives }));
+        Ok(self.meshes.len() - 1)
+    }
+
+    fn finish(
+        self,
+        out: &mut impl Write,
+        nodes: Value,
+        roots: &[usize],
+        container: Container,
+    ) -> Result<WriteReport, WriteError> {
+        let Self { mut buffer, views, accessors, meshes, materials, mut report, .. } = self;
+        for names in [&mut report.ignored, &mut report.zeroed] {
+            let mut known = HashSet::new();
+            names.retain(|name| known.insert(name.clone()));
+        }
+        let mut document = json!({
+            "asset": { "version": "2.0", "generator": "lwc" },
+            "meshes": meshes,
+            "buffers": [{ "byteLength": buffer.len() }],
+            "bufferViews": views,
+            "accessors": accessors,
+        });
+        // Lists may not be empty.
+        if !roots.is_empty() {
+            document["scene"] = 0.into();
+            document["scenes"] = json!([{ "nodes": roots }]);
+            document["nodes"] = nodes;
+        }
+        if !materials.is_empty() {
+            document["materials"] = materials.into();
+        }
+        if container == Container::Text {
+            let data = base64::engine::general_purpose::STANDARD.encode(&buffer);
+            document["buffers"][0]["uri"] = format!("data:application/octet-stream;base64,{data}").into();
+            out.write_all(document.to_string().as_bytes())?;
+            return Ok(report);
+        }
+        let mut text = document.to_string().into_bytes();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        buffer.resize(buffer.len().next_multiple_of(4), 0);
+        let length = u32::try_from(12 + 8 + text.len() + 8 + buffer.len());
+        let length =
+            length.map_err(|_| unrepresentable("more than 4 GiB are too much for GLB".to_owned()))?;
+        out.write_all(b"glTF\x02\0\0\0")?;
+        out.write_all(&length.to_le_bytes())?;
+        out.write_all(&(text.len() as u32).to_le_bytes())?;
+        out.write_all(b"JSON")?;
+        out.write_all(&text)?;
+        out.write_all(&(buffer.len() as u32).to_le_bytes())?;
+        out.write_all(b"BIN\0")?;
+        out.write_all(&buffer)?;
+        Ok(report)
+    }
+
     /// Begins a view at the end of the buffer. Its length is that of what follows.
     fn begin(&mut self) -> usize {
         self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
@@ -344,18 +409,12 @@ impl Writer {
 
     /// One primitive for each material, in the order of the table, and one for triangles without. All
     /// share the vertices.
-    fn primitives(
-        &mut self,
-        attributes: &Attributes,
-        triangles: &[[u32; 3]],
-        named: Value,
-    ) -> (Vec<Value>, Vec<Value>) {
+    fn primitives(&mut self, attributes: &Attributes, triangles: &[[u32; 3]], named: Value) -> Vec<Value> {
         let material = first_material(attributes);
         let row = |t: usize| material.and_then(|material| material.row(t));
         let mut order: Vec<(Option<usize>, usize)> = (0..triangles.len()).map(|t| (row(t), t)).collect();
         order.sort_by_key(|&(row, _)| row);
         let mut primitives = Vec::new();
-        let mut materials = Vec::new();
         for group in order.chunk_by(|a, b| a.0 == b.0) {
             let corners = group.iter().flat_map(|&(_, t)| triangles[t]);
             // The largest number of either type is not a vertex.
@@ -375,11 +434,19 @@ impl Writer {
             }));
             let mut primitive = json!({ "attributes": named, "indices": indices });
             if let Some(name) = group[0].0.and_then(|row| material?.values.names()?.get(row)) {
-                primitive["material"] = materials.len().into();
-                materials.push(if name.is_empty() { json!({}) } else { json!({ "name": name }) });
+                primitive["material"] = self.material(name).into();
             }
             primitives.push(primitive);
         }
-        (primitives, materials)
+        primitives
+    }
+
+    fn material(&mut self, name: &str) -> usize {
+        if let Some(&known) = self.material_of.get(name) {
+            return known;
+        }
+        self.materials.push(if name.is_empty() { json!({}) } else { json!({ "name": name }) });
+        self.material_of.insert(name.to_owned(), self.materials.len() - 1);
+        self.materials.len() - 1
     }
 }

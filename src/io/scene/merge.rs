@@ -1,41 +1,11 @@
-//! Files of several meshes.
+//! One mesh of all meshes of a scene.
 
-use super::{MeshFile, ReadError, ReadReport, builder::MeshBuilder};
-use crate::mesh::{Attribute, Domain, NO_ROW, Semantic, Values};
+use super::Scene;
+use crate::{
+    io::{MeshFile, ReadError, builder::MeshBuilder},
+    mesh::{Attribute, Domain, IDENTITY, Instance, NO_ROW, Semantic, Values},
+};
 use std::collections::HashMap;
-
-/// Several meshes, and where each of them is.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct Scene {
-    /// Each mesh once, in its own coordinates.
-    pub meshes: Vec<MeshFile>,
-    /// A mesh may be in several places, or nowhere.
-    pub instances: Vec<Instance>,
-    /// What was left out of the scene; the meshes have their own reports.
-    pub report: ReadReport,
-    /// The size of the file, which the size of what is made of it must be in proportion to.
-    pub(super) num_bytes: usize,
-}
-
-/// A mesh in its place.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Instance {
-    /// Zero-based index into [`Scene::meshes`].
-    pub mesh: usize,
-    /// The name of the node, or of its mesh; may be empty.
-    pub name: String,
-    /// Three rows of a 3 × 3 matrix and a translation, from the coordinates of the mesh to those of the scene.
-    pub transform: [[f64; 4]; 3],
-}
-
-impl From<MeshFile> for Scene {
-    fn from(file: MeshFile) -> Self {
-        let transform = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
-        let instances = vec![Instance { mesh: 0, name: String::new(), transform }];
-        Self { meshes: vec![file], instances, ..Self::default() }
-    }
-}
 
 /// Vertices and triangles of all instances for each byte of the file, and in any file: a thousand trees are
 /// one tree in the file, a billion are an attack.
@@ -52,27 +22,35 @@ impl Scene {
     /// If that is more than 32-bit indices can name, out of proportion to the file, or too far away for a
     /// float64.
     pub fn merge(mut self) -> Result<MeshFile, ReadError> {
-        let is_in_place = |instance: &Instance| {
-            let [[a, b, c, x], [d, e, f, y], [g, h, i, z]] = instance.transform;
-            [a, e, i] == [1.0; 3] && [b, c, d, f, g, h, x, y, z] == [0.0; 9]
-        };
-        if self.meshes.len() == 1 && self.instances.len() == 1 && is_in_place(&self.instances[0]) {
+        if self.is_single() {
             let mut file = self.meshes.remove(0);
             self.report.ignored.iter().for_each(|name| file.report.ignore(name));
             return Ok(file);
         }
         self.check_size()?;
-        let mut merger = Merger { builder: MeshBuilder::for_file(self.num_bytes), columns: Vec::new() };
-        merger.builder.report = self.report.clone();
+        let mut merger = Merger::new(&self);
         let mut is_used = vec![false; self.meshes.len()];
         for instance in &self.instances {
-            merger.add(&self.meshes[instance.mesh], instance, is_in_place(instance))?;
+            let motion = match instance.transform {
+                IDENTITY => Motion::Scaling(1.0),
+                transform => Motion::Affine(transform),
+            };
+            merger.add(&self.meshes[instance.mesh], &instance.name, motion)?;
             is_used[instance.mesh] = true;
         }
         if is_used.contains(&false) {
             merger.builder.report.ignore("meshes outside the scene");
         }
-        merger.finish(&self.instances, &self.meshes)
+        if self.instances.len() > 1 {
+            let names = self.instances.iter().map(|instance| instance.name.clone()).collect();
+            let numbers = self.instances.iter().map(|instance| self.num_triangles(instance.mesh));
+            merger.add_numbers("node", Values::Names(names), numbers);
+        }
+        merger.finish()
+    }
+
+    pub(super) fn num_triangles(&self, mesh: usize) -> usize {
+        self.meshes[mesh].mesh.num_triangles()
     }
 
     fn check_size(&self) -> Result<(), ReadError> {
@@ -92,8 +70,25 @@ impl Scene {
     }
 }
 
-/// All instances so far.
-struct Merger {
+/// How a mesh comes to its place.
+#[derive(Clone, Copy)]
+pub(super) enum Motion {
+    /// Exact for powers of two. Directions stay.
+    Scaling(f64),
+    Affine([[f64; 4]; 3]),
+}
+
+impl Motion {
+    fn moved(&self, p: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Scaling(factor) => p.map(|c| c * factor),
+            Self::Affine(rows) => rows.map(|[a, b, c, d]| a * p[0] + b * p[1] + c * p[2] + d),
+        }
+    }
+}
+
+/// All meshes so far.
+pub(super) struct Merger {
     builder: MeshBuilder,
     columns: Vec<Column>,
 }
@@ -125,29 +120,29 @@ impl Column {
 }
 
 impl Merger {
-    fn add(&mut self, file: &MeshFile, instance: &Instance, is_in_place: bool) -> Result<(), ReadError> {
+    pub(super) fn new(scene: &Scene) -> Self {
+        let mut builder = MeshBuilder::for_file(scene.num_bytes);
+        builder.report = scene.report.clone();
+        Self { builder, columns: Vec::new() }
+    }
+
+    /// Adds a mesh; `name` is for errors.
+    pub(super) fn add(&mut self, file: &MeshFile, name: &str, motion: Motion) -> Result<(), ReadError> {
         let MeshFile { mesh, attributes, report } = file;
         let builder = &mut self.builder;
         report.ignored.iter().for_each(|name| builder.report.ignore(name));
         builder.report.polygons_triangulated += report.polygons_triangulated;
         builder.report.faces_skipped += report.faces_skipped;
         builder.report.corners_welded += report.corners_welded;
-        let transform = &instance.transform;
-        let is_mirrored = determinant(transform) < 0.0;
+        let is_mirrored = matches!(motion, Motion::Affine(transform) if determinant(&transform) < 0.0);
         let first_vertex = u32::try_from(builder.positions.len()).unwrap_or(NO_ROW);
         let num_before = builder.triangles.len();
-        let moved = |p: &[f64; 3]| {
-            if is_in_place {
-                return *p;
-            }
-            transform.map(|[a, b, c, d]| a * p[0] + b * p[1] + c * p[2] + d)
-        };
-        builder.positions.extend(mesh.positions().iter().map(moved));
+        builder.positions.extend(mesh.positions().iter().map(|&p| motion.moved(p)));
         if builder.positions.len() >= NO_ROW as usize {
             return Err(ReadError::TooLarge { message: format!("{} vertices", builder.positions.len()) });
         }
         if builder.positions[first_vertex as usize..].iter().flatten().any(|c| !c.is_finite()) {
-            return Err(ReadError::TooLarge { message: format!("coordinates of node `{}`", instance.name) });
+            return Err(ReadError::TooLarge { message: format!("coordinates of node `{name}`") });
         }
         // Corner k of a triangle is corner `corners[k]` of the triangle before.
         let corners = if is_mirrored { [0, 2, 1] } else { [0, 1, 2] };
@@ -156,13 +151,12 @@ impl Merger {
 
         for attribute in &attributes.list {
             let turned;
-            let is_direction = attribute.semantic == Semantic::Normal || attribute.name == "TANGENT";
-            let attribute = match attribute.semantic {
-                Semantic::Normal if !is_in_place => {
-                    turned = turned_normals(attribute, transform);
+            let attribute = match motion {
+                Motion::Affine(transform) if attribute.semantic == Semantic::Normal => {
+                    turned = turned_normals(attribute, &transform);
                     &turned
                 }
-                _ if is_direction && !is_in_place => {
+                Motion::Affine(_) if attribute.name == "TANGENT" => {
                     self.builder.report.ignore(&attribute.name);
                     continue;
                 }
@@ -215,17 +209,21 @@ impl Merger {
         Ok(())
     }
 
-    fn finish(mut self, instances: &[Instance], meshes: &[MeshFile]) -> Result<MeshFile, ReadError> {
+    /// Adds an attribute that says of each triangle which of the meshes it is of, given how many each has.
+    pub(super) fn add_numbers(
+        &mut self,
+        name: &str,
+        table: Values,
+        num_triangles: impl Iterator<Item = usize>,
+    ) {
+        let rows = num_triangles.zip(0..).flat_map(|(count, row)| std::iter::repeat_n(row, count)).collect();
+        let attribute = Attribute::new(name, Semantic::Object, Domain::Face, 1, table);
+        self.columns.push(Column { attribute, rows, row_of: HashMap::new() });
+    }
+
+    pub(super) fn finish(mut self) -> Result<MeshFile, ReadError> {
         for Column { attribute, rows, .. } in self.columns {
             self.builder.attributes.list.push(Attribute { indices: Some(rows), ..attribute });
-        }
-        if instances.len() > 1 {
-            let names = instances.iter().map(|instance| instance.name.clone()).collect();
-            let num_triangles = |instance: &Instance| meshes[instance.mesh].mesh.num_triangles();
-            let rows = |(k, i)| std::iter::repeat_n(k as u32, num_triangles(i));
-            let rows = instances.iter().enumerate().flat_map(rows).collect();
-            let node = Attribute::new("node", Semantic::Object, Domain::Face, 1, Values::Names(names));
-            self.builder.attributes.list.push(Attribute { indices: Some(rows), ..node });
         }
         let mut file = self.builder.finish()?;
         // Where no instance has a seam, corners are more than is needed.

@@ -1,0 +1,37 @@
+//! Files of several meshes.
+
+mod merge;
+mod pack;
+
+pub use pack::SCENE_MESH;
+
+use super::{MeshFile, ReadReport};
+use crate::mesh::{IDENTITY, Instance};
+
+/// Several meshes, and where each of them is.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Scene {
+    /// Each mesh once, in its own coordinates.
+    pub meshes: Vec<MeshFile>,
+    /// A mesh may be in several places, or nowhere.
+    pub instances: Vec<Instance>,
+    /// What was left out of the scene; the meshes have their own reports.
+    pub report: ReadReport,
+    /// The size of the file, which the size of what is made of it must be in proportion to.
+    pub(super) num_bytes: usize,
+}
+
+impl From<MeshFile> for Scene {
+    fn from(file: MeshFile) -> Self {
+        let instances = vec![Instance { mesh: 0, name: String::new(), transform: IDENTITY }];
+        Self { meshes: vec![file], instances, ..Self::default() }
+    }
+}
+
+impl Scene {
+    /// Whether it is one mesh that is where its coordinates say.
+    pub fn is_single(&self) -> bool {
+        matches!(&self.instances[..], [instance] if instance.transform == IDENTITY) && self.meshes.len() == 1
+    }
+}

@@ -1,0 +1,189 @@
+//! A scene as one mesh, and back: what a stream holds.
+
+use super::{Scene, merge::Merger, merge::Motion};
+use crate::{
+    io::{MeshFile, ReadError, ReadReport},
+    mesh::{Attribute, Attributes, Domain, NO_ROW, SceneTable, TriMesh, Values},
+};
+use std::collections::HashMap;
+
+/// The attribute that says of which mesh of a scene a triangle is.
+pub const SCENE_MESH: &str = "scene mesh";
+
+impl Scene {
+    /// One mesh of all meshes, each once and in its own coordinates times a power of two: about as large as its
+    /// largest instance is in the scene, so that one grid does for all. [`SCENE_MESH`] says which is which.
+    ///
+    /// # Errors
+    /// As [`Scene::merge`].
+    pub fn pack(&self) -> Result<(MeshFile, SceneTable), ReadError> {
+        let exponents: Vec<i8> = (0..self.meshes.len()).map(|mesh| self.exponent(mesh)).collect();
+        let mut merger = Merger::new(self);
+        for (mesh, (file, &exponent)) in self.meshes.iter().zip(&exponents).enumerate() {
+            let name = || self.instances.iter().find(|i| i.mesh == mesh).map(|i| i.name.as_str());
+            merger.add(file, name().unwrap_or_default(), Motion::Scaling(power_of_two(exponent)))?;
+        }
+        if self.meshes.len() > 1 {
+            let numbers = Values::U32((0..self.meshes.len() as u32).collect());
+            merger.add_numbers(SCENE_MESH, numbers, (0..self.meshes.len()).map(|m| self.num_triangles(m)));
+        }
+        Ok((merger.finish()?, SceneTable { exponents, instances: self.instances.clone() }))
+    }
+
+    /// The power of two closest to how much larger a mesh is in the scene than in its own coordinates.
+    fn exponent(&self, mesh: usize) -> i8 {
+        let places = self.instances.iter().filter(|instance| instance.mesh == mesh);
+        let scale = |[x, y, z]: [[f64; 4]; 3]| {
+            let squares = [x, y, z].map(|row| row[..3].iter().map(|e| e * e).sum::<f64>());
+            (squares.iter().sum::<f64>() / 3.0).sqrt()
+        };
+        let largest = places.map(|instance| scale(instance.transform)).fold(0.0, f64::max);
+        // A mesh that is nowhere is as large as it is.
+        let scale = if largest > 0.0 && largest.is_finite() { largest } else { 1.0 };
+        scale.log2().round().clamp(-100.0, 100.0) as i8
+    }
+
+    /// The scene that a mesh packed by [`Scene::pack`] is, at any level. Meshes that have no triangles have no
+    /// vertices either.
+    pub fn unpack(mesh: &TriMesh, attributes: &Attributes, table: &SceneTable) -> Self {
+        let which = attributes.list.iter().position(|attribute| is_scene_mesh(attribute));
+        let number = |t: usize| {
+            let attribute = &attributes.list[which?];
+            attribute.number(attribute.row(t)?, 0)
+        };
+        let mut parts = vec![Part::default(); table.exponents.len()];
+        for t in 0..mesh.num_triangles() {
+            let part = number(t).map_or(0, |number| number as usize);
+            if let Some(part) = parts.get_mut(part) {
+                part.triangles.push(t);
+            }
+        }
+        let listed = attributes.list.iter().enumerate().filter(|&(k, _)| Some(k) != which);
+        let listed: Vec<&Attribute> = listed.map(|(_, attribute)| attribute).collect();
+        let libraries = &attributes.material_libraries;
+        let meshes = parts.iter().zip(&table.exponents).map(|(part, &exponent)| {
+            let mut file = part.extract(mesh, &listed, power_of_two(exponent).recip());
+            file.attributes.material_libraries.clone_from(libraries);
+            file
+        });
+        // Instances may repeat what the stream has once, but not beyond reason.
+        let num_bytes = size_of::<[f64; 6]>() * mesh.num_vertices();
+        let instances = table.instances.clone();
+        Self { meshes: meshes.collect(), instances, report: ReadReport::default(), num_bytes }
+    }
+}
+
+fn is_scene_mesh(attribute: &Attribute) -> bool {
+    attribute.name == SCENE_MESH && attribute.domain == Domain::Face && attribute.values.names().is_none()
+}
+
+fn power_of_two(exponent: i8) -> f64 {
+    2f64.powi(i32::from(exponent))
+}
+
+/// The triangles of one mesh.
+#[derive(Clone, Default)]
+struct Part {
+    triangles: Vec<usize>,
+}
+
+impl Part {
+    fn extract(&self, mesh: &TriMesh, attributes: &[&Attribute], factor: f64) -> MeshFile {
+        let mut name_of: HashMap<u32, u32> = HashMap::new();
+        let mut vertices = Vec::new();
+        let mut name = |v: u32| {
+            *name_of.entry(v).or_insert_with(|| {
+                vertices.push(v);
+                vertices.len() as u32 - 1
+            })
+        };
+        let triangles = self.triangles.iter().map(|&t| mesh.triangles()[t].map(&mut name)).collect();
+        let positions = vertices.iter().map(|&v| mesh.positions()[v as usize].map(|c| c * factor)).collect();
+        let mut file =
+            MeshFile { mesh: TriMesh::from_valid_parts(positions, triangles), ..MeshFile::default() };
+        let corners = |&t: &usize| [3 * t, 3 * t + 1, 3 * t + 2];
+        for attribute in attributes {
+            let part = match attribute.domain {
+                Domain::Vertex => selected(attribute, vertices.iter().map(|&v| v as usize)),
+                Domain::Corner => selected(attribute, self.triangles.iter().flat_map(corners)),
+                Domain::Face => selected(attribute, self.triangles.iter().copied()),
+            };
+            file.attributes.list.extend(part);
+        }
+        // What has no seam in this mesh may have one in another.
+        for attribute in &mut file.attributes.list {
+            if let Some(smooth) = attribute.without_seams(&file.mesh) {
+                *attribute = smooth;
+            }
+        }
+        file
+    }
+}
+
+/// The attribute on some elements, with the rows that these have; `None` if they have none.
+fn selected(attribute: &Attribute, elements: impl Iterator<Item = usize>) -> Option<Attribute> {
+    let n = attribute.num_components;
+    let mut values = attribute.values.emptied();
+    let mut row_of: HashMap<usize, u32> = HashMap::new();
+    let mut copy = |row: usize| {
+        let next = row_of.len() as u32;
+        *row_of.entry(row).or_insert_with(|| {
+            match (&mut values, &attribute.values) {
+                (Values::Names(to), Values::Names(from)) => to.push(from[row].clone()),
+                (to, from) => (row * n..(row + 1) * n).for_each(|k| to.push_bits(from.bits(k).unwrap_or(0))),
+            }
+            next
+        })
+    };
+    let rows: Vec<u32> = elements.map(|element| attribute.row(element).map_or(NO_ROW, &mut copy)).collect();
+    let is_plain = rows.iter().zip(0..).all(|(&row, k)| row == k) && rows.len() == row_of.len();
+    let indices = if is_plain { None } else { Some(rows) };
+    (!row_of.is_empty()).then(|| Attribute { values, indices, ..attribute.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{IDENTITY, Instance, Semantic};
+
+    fn triangle(at: f64) -> TriMesh {
+        TriMesh::new(vec![[at, 0.0, -0.0], [at + 1.0, 0.0, 0.0], [at, 1.0, 0.1]], vec![[0, 1, 2]]).unwrap()
+    }
+
+    fn scene() -> Scene {
+        let vertex = |name: &str, values| Attribute::new(name, Semantic::Generic, Domain::Vertex, 1, values);
+        let mut first = MeshFile { mesh: triangle(0.0), ..MeshFile::default() };
+        first.attributes.list = vec![vertex("heat", Values::F32(vec![0.5, -0.0, f32::NAN]))];
+        let mut second = MeshFile { mesh: triangle(5.0), ..MeshFile::default() };
+        let wood = Values::Names(vec!["wood".into()]);
+        second.attributes.list = vec![Attribute::new("m", Semantic::Material, Domain::Face, 1, wood)];
+        let mut scene = Scene { meshes: vec![first, second], ..Scene::default() };
+        let scaled = IDENTITY.map(|row| row.map(|e| 9.0 * e));
+        scene.instances = vec![
+            Instance { mesh: 1, name: "small".into(), transform: IDENTITY },
+            Instance { mesh: 1, name: "large".into(), transform: scaled },
+        ];
+        scene
+    }
+
+    #[test]
+    fn scenes_come_back_bit_for_bit() {
+        let scene = scene();
+        let (file, table) = scene.pack().unwrap();
+        assert_eq!(table.exponents, [0, 3]);
+        assert_eq!(file.mesh.positions()[3], [40.0, 0.0, 0.0]);
+        let again = Scene::unpack(&file.mesh, &file.attributes, &table);
+        assert_eq!((&again.meshes, &again.instances), (&scene.meshes, &scene.instances));
+        let zero = again.meshes[1].mesh.positions()[0][2];
+        assert!(zero == 0.0 && zero.is_sign_negative());
+    }
+
+    #[test]
+    fn a_table_that_knows_fewer_meshes_is_harmless() {
+        let (file, mut table) = scene().pack().unwrap();
+        table.exponents.truncate(1);
+        table.instances.clear();
+        let again = Scene::unpack(&file.mesh, &file.attributes, &table);
+        assert_eq!(again.meshes, scene().meshes[..1]);
+    }
+}

@@ -1,0 +1,110 @@
+//! Chunk `n` (`format/SPEC.md`, section 4.4): the meshes of a scene and where they stand.
+
+use crate::bitstream::bytes::Reader;
+#[cfg(any(feature = "encoder", test))]
+use crate::bitstream::bytes::write_varint;
+use crate::mesh::{IDENTITY, Instance, SceneTable};
+
+const UNMOVED: u8 = 0;
+const MOVED: u8 = 1;
+const SINGLE: u8 = 2;
+const DOUBLE: u8 = 3;
+
+/// `None` if the payload breaks a rule.
+pub(crate) fn read(payload: &[u8]) -> Option<SceneTable> {
+    let mut reader = Reader::new(payload);
+    // Each mesh has a byte, each instance several: counts are as small as the payload.
+    let num_meshes = reader.varint()? as usize;
+    let exponents: Vec<i8> = reader.take(num_meshes)?.iter().map(|&byte| byte as i8).collect();
+    let num_instances = reader.varint()?;
+    let mut instances = Vec::new();
+    for _ in 0..num_instances {
+        let mesh = reader.varint()? as usize;
+        let length = reader.varint()? as usize;
+        let name = std::str::from_utf8(reader.take(length)?).ok()?.to_owned();
+        let mut transform = IDENTITY;
+        let mut entries = transform.iter_mut().flatten();
+        match reader.u8()? {
+            UNMOVED => {}
+            MOVED => entries.skip(3).step_by(4).try_for_each(|e| Some(*e = f64::from(reader.f32()?)))?,
+            SINGLE => entries.try_for_each(|e| Some(*e = f64::from(reader.f32()?)))?,
+            DOUBLE => entries.try_for_each(|e| Some(*e = reader.f64()?))?,
+            _ => return None,
+        }
+        let is_finite = transform.iter().flatten().all(|entry| entry.is_finite());
+        if mesh >= num_meshes || !is_finite {
+            return None;
+        }
+        instances.push(Instance { mesh, name, transform });
+    }
+    reader.is_empty().then_some(SceneTable { exponents, instances })
+}
+
+#[cfg(any(feature = "encoder", test))]
+pub(crate) fn write(table: &SceneTable) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_varint(&mut bytes, table.exponents.len() as u32);
+    bytes.extend(table.exponents.iter().map(|&exponent| exponent as u8));
+    write_varint(&mut bytes, table.instances.len() as u32);
+    for Instance { mesh, name, transform } in &table.instances {
+        write_varint(&mut bytes, *mesh as u32);
+        write_varint(&mut bytes, name.len() as u32);
+        bytes.extend(name.as_bytes());
+        let entries = transform.as_flattened();
+        let is_single = entries.iter().all(|&e| f64::from(e as f32).to_bits() == e.to_bits());
+        let is_moved = (0..12).all(|k| k % 4 == 3 || entries[k] == IDENTITY.as_flattened()[k]);
+        let single = |e: &f64| (*e as f32).to_le_bytes();
+        if *transform == IDENTITY {
+            bytes.push(UNMOVED);
+        } else if is_single && is_moved {
+            bytes.push(MOVED);
+            bytes.extend(entries.iter().skip(3).step_by(4).flat_map(single));
+        } else if is_single {
+            bytes.push(SINGLE);
+            bytes.extend(entries.iter().flat_map(single));
+        } else {
+            bytes.push(DOUBLE);
+            bytes.extend(entries.iter().flat_map(|e| e.to_le_bytes()));
+        }
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> SceneTable {
+        let place = |mesh, name: &str, transform| Instance { mesh, name: name.into(), transform };
+        let [x, y, z] = IDENTITY;
+        let moved = [[1.0, 0.0, 0.0, 2.5], y, z];
+        let turned = [[0.0, -1.0, 0.0, 2.5], [1.0, 0.0, 0.0, 0.0], z];
+        let exact = [[0.1, 0.0, 0.0, 0.0], y, z];
+        let instances = vec![
+            place(0, "", [x, y, z]),
+            place(2, "tree", moved),
+            place(2, "Bäume", turned),
+            place(1, "", exact),
+        ];
+        SceneTable { exponents: vec![0, -3, 127], instances }
+    }
+
+    #[test]
+    fn scenes_come_back() {
+        for table in [table(), SceneTable::default()] {
+            assert_eq!(read(&write(&table)), Some(table));
+        }
+    }
+
+    #[test]
+    fn what_is_cut_or_wrong_is_refused() {
+        let bytes = write(&table());
+        assert!((0..bytes.len()).all(|end| read(&bytes[..end]).is_none()));
+        assert_eq!(read(&[&bytes[..], &[0]].concat()), None, "too long");
+        assert_eq!(read(&[1, 0, 1, 1, 0, 0]), None, "no such mesh");
+        assert_eq!(read(&[1, 0, 1, 0, 0, 4]), None, "no such form");
+        assert_eq!(read(&[1, 0, 1, 0, 1, 0xff, 0]), None, "no text");
+        let infinite = [&[1, 0, 1, 0, 0, 1][..], &f32::INFINITY.to_le_bytes(), &[0; 8]].concat();
+        assert_eq!(read(&infinite), None, "not finite");
+    }
+}
