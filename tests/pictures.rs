@@ -7,7 +7,7 @@ mod common;
 use assert_cmd::Command;
 use common::*;
 use lwc::mesh::{Domain, Semantic};
-use lwc::render::{Camera, Image, Shading, Style, Up, View, render};
+use lwc::render::{Camera, Image, Paint, Shading, Style, Up, View, render};
 use lwc::{TriMesh, io};
 use std::io::Cursor;
 use std::path::Path;
@@ -15,7 +15,7 @@ use std::process::Output;
 
 fn picture(mesh: &TriMesh, style: &Style) -> Image {
     let camera = Camera::fit(mesh, View::default(), Up::Y, style.size[0], style.size[1]);
-    render(mesh, None, &camera, style).unwrap()
+    render(mesh, Paint::Plain, &camera, style).unwrap()
 }
 
 fn small() -> Style {
@@ -73,11 +73,11 @@ fn values_colour_the_surface() {
     let style = small();
     let camera = Camera::fit(&mesh, "front".parse().unwrap(), Up::Y, 200, 200);
     let values: Vec<f64> = mesh.positions().iter().map(|p| (p[0] + 1.0) / 2.0).collect();
-    let image = render(&mesh, Some(&values), &camera, &style).unwrap();
+    let image = render(&mesh, Paint::Values(&values), &camera, &style).unwrap();
     let (left, right) = (image.pixel(15, 100).unwrap(), image.pixel(185, 100).unwrap());
     // Violet to yellow.
     assert!(left[2] > left[1] && right[1] > 2 * right[2], "{left:?} {right:?}");
-    assert!(render(&mesh, Some(&values[1..]), &camera, &style).is_err());
+    assert!(render(&mesh, Paint::Values(&values[1..]), &camera, &style).is_err());
 }
 
 #[test]

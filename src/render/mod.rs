@@ -1,13 +1,13 @@
 //! Pictures of meshes and charts of numbers, without a display and without fonts of the system.
 //!
 //! ```
-//! use lwc::render::{Camera, Style, Up, View, render};
+//! use lwc::render::{Camera, Paint, Style, Up, View, render};
 //!
 //! # let mesh = lwc::TriMesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]])?;
 //! let style = Style { size: [320, 240], ..Style::default() };
 //! let camera = Camera::fit(&mesh, View::default(), Up::Y, 320, 240);
 //! let mut png = Vec::new();
-//! render(&mesh, None, &camera, &style)?.write_png(&mut png)?;
+//! render(&mesh, Paint::Plain, &camera, &style)?.write_png(&mut png)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -17,6 +17,7 @@ mod colour;
 mod font;
 mod heat;
 mod image;
+mod paint;
 mod raster;
 mod shade;
 
@@ -25,6 +26,7 @@ pub use chart::{Chart, Series, log_ticks};
 pub use colour::sequential;
 pub use heat::{Heat, with_legend};
 pub use image::Image;
+pub use paint::{CornerPaint, Paint};
 pub use shade::render;
 
 use thiserror::Error;
@@ -84,8 +86,8 @@ pub enum RenderError {
         /// Pixels down.
         height: u32,
     },
-    /// There must be one value per vertex.
-    #[error("the number of values is not that of the vertices")]
+    /// There must be one value per vertex, or corner.
+    #[error("the number of values is not that of the vertices or corners")]
     Values,
     /// A chart cannot be drawn.
     #[error("the chart cannot be drawn: {0}")]

@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use super::raster::{NOTHING, Projected, Visible};
-use super::{Image, RenderError, Shading, Style, sequential};
+use super::{Image, Paint, RenderError, Shading, Style};
 use crate::TriMesh;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ const FILL_SHARE: f64 = 0.2;
 /// Strength and sharpness of the highlight.
 const GLOSS: f64 = 0.1;
 const SHARPNESS: i32 = 24;
-/// How much less shade a heat map has: its colours are to be read.
+/// How much less shade a painted surface has: its colours are to be read.
 const HEAT_SOFTNESS: f64 = 0.6;
 /// Colour of wires and outlines.
 const INK: [u8; 3] = [25, 28, 35];
@@ -32,27 +32,17 @@ const MAX_SAMPLES: u64 = 1 << 28;
 
 /// Takes a picture of `mesh` with `camera`.
 ///
-/// `values`, one per vertex and in [0, 1], colour the surface with [`sequential`] in place of the
-/// style's colour.
-///
 /// # Errors
-/// If the size is out of range or the number of values differs from that of the vertices.
-pub fn render(
-    mesh: &TriMesh,
-    values: Option<&[f64]>,
-    camera: &Camera,
-    style: &Style,
-) -> Result<Image, RenderError> {
-    if values.is_some_and(|values| values.len() != mesh.num_vertices()) {
-        return Err(RenderError::Values);
-    }
+/// If the size is out of range or the paint does not fit the mesh.
+pub fn render(mesh: &TriMesh, paint: Paint, camera: &Camera, style: &Style) -> Result<Image, RenderError> {
+    paint.check(mesh)?;
     let [width, height] = style.size;
     let pixels = u64::from(width) * u64::from(height);
     let fits = |scale: &u32| pixels * u64::from(scale * scale) <= MAX_SAMPLES;
     let scale = (1..=style.oversampling.clamp(1, 8)).rev().find(fits).unwrap_or(1);
     let mut image = Image::new(width, height, style.background)?;
     let samples = [width as usize * scale as usize, height as usize * scale as usize];
-    let scene = Scene::new(mesh, values, camera, style, samples);
+    let scene = Scene::new(mesh, paint, camera, style, samples);
     let visible = Visible::new(&scene.triangles, samples[0], samples[1]);
     let mut large = Image::oversized(samples, style.background);
     large.par_rows_mut().enumerate().for_each(|(row, pixels)| {
@@ -72,7 +62,7 @@ pub fn render(
 /// Everything that a sample's colour depends on.
 struct Scene<'a> {
     mesh: &'a TriMesh,
-    values: Option<&'a [f64]>,
+    paint: Paint<'a>,
     style: &'a Style,
     triangles: Vec<Projected>,
     /// Unit normals as right, up, towards the viewer: per vertex if smooth, else per triangle.
@@ -82,7 +72,7 @@ struct Scene<'a> {
 impl<'a> Scene<'a> {
     fn new(
         mesh: &'a TriMesh,
-        values: Option<&'a [f64]>,
+        paint: Paint<'a>,
         camera: &Camera,
         style: &'a Style,
         samples: [usize; 2],
@@ -97,7 +87,7 @@ impl<'a> Scene<'a> {
         };
         Self {
             mesh,
-            values,
+            paint,
             style,
             triangles: triangles.map(|t| Projected(t.map(|v| places[v as usize]))).collect(),
             normals: normals.par_iter().map(|&n| camera.turn(n).normalize_or_zero()).collect(),
@@ -120,12 +110,9 @@ impl<'a> Scene<'a> {
                 sum.normalize_or_zero()
             }
         };
-        let base = match self.values {
-            Some(values) => sequential((0..3).map(|i| values[corners[i]] * weights[i]).sum()),
-            None => self.style.colour,
-        };
-        let softness = if self.values.is_some() { HEAT_SOFTNESS } else { 0.0 };
-        let mut colour = lit(base, normal, softness);
+        let painted = self.paint.at(self.mesh, face as usize, weights);
+        let softness = if painted.is_some() { HEAT_SOFTNESS } else { 0.0 };
+        let mut colour = lit(painted.unwrap_or(self.style.colour), normal, softness);
         if self.style.wireframe {
             // Half a sample to each side, so that wires do not fade where the picture is not oversampled.
             let cover = HALF_WIRE * scale + 0.5 - projected.distance_to_sides(weights);

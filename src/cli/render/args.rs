@@ -1,10 +1,11 @@
 //! What may be typed after `lwc render`, and about pictures elsewhere.
 
-use crate::cli::args::{self, LimitArgs, WindowArgs};
+use crate::cli::args::{LimitArgs, WindowArgs};
 use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::value_parser;
 use lwc::descriptors::Descriptor;
+use lwc::mesh::{Attribute, Attributes, Semantic};
 use lwc::render::{Shading, Style, Up, View};
 use std::path::PathBuf;
 
@@ -14,6 +15,7 @@ use std::path::PathBuf;
 Examples:
   lwc render model.lwc -o model.png --level 6 --wireframe
   lwc render terrain.ply -o heat.png --up z --color-by harris3d --clip 2
+  lwc render textured.lwc -o uv.png --bytes 20K --color-by uv
   lwc render model.lwc -o levels.png --montage --levels 0,4,8,12 --shading flat")]
 pub struct Render {
     /// Mesh (.obj .ply .stl .glb .gltf .las .laz, each also as .zst) or stream (.lwc).
@@ -30,9 +32,10 @@ pub struct Render {
     pub bytes: Option<u64>,
     #[command(flatten)]
     pub picture: Picture,
-    /// Colour by this descriptor in place of one colour, its values spread over [0, 1].
-    #[arg(long, value_name = "NAME", value_parser = args::descriptor_parser())]
-    pub color_by: Option<Descriptor>,
+    /// Colour by a descriptor, its values spread over [0, 1], or by an attribute: `color`, `normal`, or `uv` as
+    /// red and green with a pattern of squares. Magenta where there is no value.
+    #[arg(long, value_name = "NAME", value_parser = color_by_parser())]
+    pub color_by: Option<ColorBy>,
     #[command(flatten)]
     pub heat: HeatArgs,
     #[command(flatten)]
@@ -48,6 +51,37 @@ pub struct Render {
     pub columns: Option<u32>,
     #[command(flatten)]
     pub limits: LimitArgs,
+}
+
+/// What colours a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ColorBy {
+    Descriptor(Descriptor),
+    Attribute(AttributeKind),
+}
+
+/// An attribute that can be shown, the first of its kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AttributeKind {
+    Color,
+    Normal,
+    Uv,
+}
+
+impl AttributeKind {
+    const NAMES: [(&str, Self); 3] = [("color", Self::Color), ("normal", Self::Normal), ("uv", Self::Uv)];
+
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, kind)| *kind == self).map_or("", |(name, _)| name)
+    }
+
+    pub fn find(self, attributes: &Attributes) -> Option<&Attribute> {
+        attributes.list.iter().find(|attribute| match self {
+            Self::Color => matches!(attribute.semantic, Semantic::Color(_)),
+            Self::Normal => attribute.semantic == Semantic::Normal,
+            Self::Uv => matches!(attribute.semantic, Semantic::TexCoord(_)),
+        })
+    }
 }
 
 /// How a picture looks.
@@ -129,6 +163,18 @@ fn background(text: &str) -> Result<[u8; 4], String> {
         "black" => Ok([0, 0, 0, 255]),
         _ => colour(text).map(|[r, g, b]| [r, g, b, 255]),
     }
+}
+
+fn color_by_parser() -> impl TypedValueParser<Value = ColorBy> {
+    let attributes = AttributeKind::NAMES.map(|(name, _)| name);
+    let names = Descriptor::ALL.map(Descriptor::name).into_iter().chain(attributes);
+    PossibleValuesParser::new(names).try_map(|name| {
+        let kind = AttributeKind::NAMES.iter().find(|(known, _)| *known == name);
+        match kind {
+            Some((_, kind)) => Ok(ColorBy::Attribute(*kind)),
+            None => name.parse().map(ColorBy::Descriptor),
+        }
+    })
 }
 
 fn up_parser() -> impl TypedValueParser<Value = Up> {

@@ -8,9 +8,11 @@ use super::input::{DecodedStream, StreamSource, note_if_incomplete, read_mesh};
 use super::output::Destination;
 use super::ui::Ui;
 use anyhow::Context;
-use args::{HeatArgs, Picture, Render};
+use args::{AttributeKind, ColorBy, HeatArgs, Picture, Render};
 use lwc::descriptors::{evaluate, mean_edge_length};
-use lwc::render::{Camera, Heat, Image, RenderError, render, with_legend};
+use lwc::io::MeshFile;
+use lwc::mesh::Attributes;
+use lwc::render::{Camera, CornerPaint, Heat, Image, Paint, RenderError, render, with_legend};
 use lwc::{DecodeError, DecodeOptions, TriMesh};
 use std::path::Path;
 
@@ -22,11 +24,16 @@ pub fn run(args: &Render, ui: &Ui) -> anyhow::Result<()> {
     let picture = if args.montage {
         montage::montage(args, ui)?
     } else {
-        let mesh = read(args, ui)?;
+        let MeshFile { mesh, attributes, .. } = read(args, ui)?;
         match args.color_by {
-            Some(descriptor) => {
+            Some(ColorBy::Descriptor(descriptor)) => {
                 let values = evaluate(descriptor, &mesh, &args.window.window(), mean_edge_length(&mesh));
                 heat_picture(&mesh, &values, descriptor.name(), &args.heat, &args.picture)?
+            }
+            Some(ColorBy::Attribute(kind)) => {
+                let paint =
+                    paint(&mesh, &attributes, kind).with_context(|| args.input.display().to_string())?;
+                picture_with(&mesh, Paint::Corners(&paint), &args.picture)?
             }
             None => plain_picture(&mesh, &args.picture)?,
         }
@@ -47,14 +54,20 @@ pub fn has_ending(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
+/// The colours that an attribute gives.
+fn paint(mesh: &TriMesh, attributes: &Attributes, kind: AttributeKind) -> Result<CornerPaint, Failure> {
+    let paint = kind.find(attributes).and_then(|attribute| CornerPaint::new(mesh, attribute));
+    paint.ok_or_else(|| Failure::Usage(format!("the mesh has no attribute `{}` to show", kind.name())))
+}
+
 /// The mesh to show.
-fn read(args: &Render, ui: &Ui) -> anyhow::Result<TriMesh> {
+fn read(args: &Render, ui: &Ui) -> anyhow::Result<MeshFile> {
     if !has_ending(&args.input, "lwc") {
         if args.level.is_some() || args.bytes.is_some() {
             let what = "--level and --bytes are for streams (.lwc)".to_owned();
             return Err(Failure::Usage(what)).with_context(|| args.input.display().to_string());
         }
-        return Ok(read_mesh(&args.input, ui)?.mesh);
+        return read_mesh(&args.input, ui);
     }
     let source = StreamSource::File(args.input.clone());
     let mut options = DecodeOptions::new().limits(args.limits.limits());
@@ -67,7 +80,9 @@ fn read(args: &Render, ui: &Ui) -> anyhow::Result<TriMesh> {
     }
     note_if_incomplete(&decoder, args.bytes, &source.name(), ui);
     let mesh = decoder.mesh().ok_or(DecodeError::NoMesh).with_context(|| source.name())?;
-    Ok(mesh.to_tri_mesh())
+    let mut file = MeshFile::default();
+    file.mesh = mesh.to_tri_mesh();
+    Ok(file)
 }
 
 fn camera(mesh: &TriMesh, picture: &Picture) -> Camera {
@@ -80,7 +95,11 @@ fn camera(mesh: &TriMesh, picture: &Picture) -> Camera {
 /// # Errors
 /// If the picture is too large.
 pub fn plain_picture(mesh: &TriMesh, picture: &Picture) -> Result<Image, RenderError> {
-    render(mesh, None, &camera(mesh, picture), &picture.style())
+    picture_with(mesh, Paint::Plain, picture)
+}
+
+fn picture_with(mesh: &TriMesh, paint: Paint, picture: &Picture) -> Result<Image, RenderError> {
+    render(mesh, paint, &camera(mesh, picture), &picture.style())
 }
 
 /// `mesh` coloured by `values`, one per vertex, with a legend.
@@ -96,6 +115,6 @@ pub fn heat_picture(
 ) -> Result<Image, RenderError> {
     let heat = Heat::new(values, heat.clip);
     let style = picture.style();
-    let image = render(mesh, Some(&heat.values), &camera(mesh, picture), &style)?;
+    let image = render(mesh, Paint::Values(&heat.values), &camera(mesh, picture), &style)?;
     with_legend(&image, title, &heat, style.background)
 }

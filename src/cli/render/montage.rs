@@ -6,7 +6,7 @@ use crate::cli::exit::Failure;
 use crate::cli::ui::Ui;
 use anyhow::Context;
 use lwc::metrics::{CompareOptions, compare};
-use lwc::render::{Camera, Image, RenderError, render};
+use lwc::render::{Camera, Image, Paint, RenderError, render};
 use lwc::{DecodeError, Decoder, TriMesh};
 
 /// Distances are shown with a tenth of a decibel: this many samples are plenty.
@@ -43,7 +43,7 @@ pub(super) fn montage(args: &Render, ui: &Ui) -> anyhow::Result<Image> {
     let mut cells = Vec::new();
     for (i, level) in shown.iter().enumerate() {
         bar.set(i as f64 / shown.len() as f64);
-        let picture = render(&level.mesh, None, &camera, &style)?;
+        let picture = render(&level.mesh, Paint::Plain, &camera, &style)?;
         let options = CompareOptions::new().samples(SAMPLES);
         let distance = compare(&finest.mesh, &level.mesh, &options).with_context(|| name.clone())?;
         let db = distance.psnr_db();
