@@ -197,7 +197,7 @@ fn primitives_share_vertices_and_have_materials() {
     let id = named(&file, "_ID");
     assert_eq!((id.semantic, id.domain), (Semantic::Generic, Domain::Corner));
     assert_eq!(at_corners(&file, "_ID")[8..], [None, Some(1.0), Some(2.0), Some(3.0)]);
-    assert_eq!(file.report.ignored, ["materials but their names"]);
+    assert!(file.report.ignored.is_empty());
 
     let mut bytes = Vec::new();
     let report = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Glb).unwrap();
@@ -333,6 +333,52 @@ fn scenes_are_written_in_their_places() {
     let merged = folder.path().join("merged.ply");
     io::write_scene(&merged, &scene).unwrap();
     assert_eq!(io::read(&merged).unwrap().mesh.num_vertices(), 6);
+}
+
+#[test]
+fn materials_and_their_images_are_carried() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let image = model.floats("SCALAR", 1, &[1.5, 2.5]);
+    let image = model.accessors[image]["bufferView"].clone();
+    let primitive = |material: usize| json!({ "attributes": { "POSITION": position }, "material": material });
+    let colour = json!({ "baseColorFactor": [1.0, 0.5, 0.0, 1.0], "baseColorTexture": { "index": 1 } });
+    let document = model.document(json!({
+        "meshes": [{ "primitives": [primitive(2), primitive(0)] }],
+        "materials": [
+            { "name": "paint", "pbrMetallicRoughness": colour, "extensions": { "KHR_materials_unlit": {} } },
+            { "name": "unused", "doubleSided": true },
+            { "name": "paint" },
+        ],
+        "textures": [{ "source": 1 }, { "source": 0, "sampler": 0 }],
+        "samplers": [{ "wrapS": 33071 }],
+        "images": [{ "bufferView": image, "mimeType": "image/png" }, { "uri": "wood.jpg" }],
+        "extensionsUsed": ["KHR_materials_unlit", "KHR_lights_punctual"],
+    }));
+    let file = read(&document).unwrap();
+    assert!(file.report.ignored.is_empty(), "{:?}", file.report);
+    assert_eq!(named(&file, "material").values.names().unwrap(), ["paint#2", "paint"]);
+    let carried = file.attributes.gltf_materials.as_ref().unwrap();
+    assert_eq!(carried.images, [[1.5f32.to_le_bytes(), 2.5f32.to_le_bytes()].concat()]);
+
+    let mut bytes = Vec::new();
+    io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Gltf).unwrap();
+    let written: Value = serde_json::from_slice(&bytes).unwrap();
+    for list in ["textures", "samplers"] {
+        assert_eq!(written[list], document[list]);
+    }
+    assert_eq!(written["materials"][0], document["materials"][0]);
+    assert_eq!(written["extensionsUsed"], json!(["KHR_materials_unlit"]));
+    assert_eq!(written["images"][1], json!({ "uri": "wood.jpg" }));
+    let materials: Vec<&Value> =
+        written["meshes"][0]["primitives"].as_array().unwrap().iter().map(|p| &p["material"]).collect();
+    assert_eq!(materials, [&json!(2), &json!(0)]);
+    let again = read(&written).unwrap();
+    assert_eq!(again.attributes, file.attributes);
+
+    let mut ply = Vec::new();
+    let report = io::write_with_attributes_to(&mut ply, &file.mesh, &file.attributes, Format::Ply).unwrap();
+    assert!(report.ignored.contains(&"materials but their names".to_owned()));
 }
 
 #[test]

@@ -42,7 +42,8 @@ fn read_with(
 pub fn not_kept(file: &MeshFile) -> Vec<String> {
     let attributes = file.attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
     let libraries = file.attributes.material_libraries.first().map(|_| "mtllib".to_owned());
-    file.report.ignored.iter().cloned().chain(attributes).chain(libraries).collect()
+    let materials = file.attributes.gltf_materials.as_ref().map(|_| "materials but their names".to_owned());
+    file.report.ignored.iter().cloned().chain(attributes).chain(libraries).chain(materials).collect()
 }
 
 fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {

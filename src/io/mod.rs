@@ -397,24 +397,28 @@ pub fn write_with_attributes_to(
         let misfit = |error| WriteError::Unrepresentable { message: misfit(error) };
         attribute.validate(mesh).map_err(misfit)?;
     }
-    match format {
-        Format::Obj => Ok(obj::write(&mut out, mesh, attributes)?),
-        Format::Ply => Ok(ply::write(&mut out, mesh, attributes)?),
+    let mut report = match format {
+        Format::Obj => obj::write(&mut out, mesh, attributes)?,
+        Format::Ply => ply::write(&mut out, mesh, attributes)?,
         Format::Stl => {
             stl::write(&mut out, mesh)?;
             let ignored = attributes.list.iter().map(|attribute| attribute.name.clone()).collect();
-            Ok(WriteReport { ignored, ..WriteReport::default() })
+            WriteReport { ignored, ..WriteReport::default() }
         }
         #[cfg(feature = "gltf")]
-        Format::Glb => gltf::write(&mut out, mesh, attributes, gltf::Container::Glb),
+        Format::Glb => return gltf::write(&mut out, mesh, attributes, gltf::Container::Glb),
         #[cfg(feature = "gltf")]
-        Format::Gltf => gltf::write(&mut out, mesh, attributes, gltf::Container::Text),
+        Format::Gltf => return gltf::write(&mut out, mesh, attributes, gltf::Container::Text),
         #[cfg(feature = "las")]
         Format::Las | Format::Laz => {
             let message = "point clouds are read and not written".to_owned();
-            Err(WriteError::Unrepresentable { message })
+            return Err(WriteError::Unrepresentable { message });
         }
+    };
+    if attributes.gltf_materials.is_some() {
+        report.ignored.push("materials but their names".to_owned());
     }
+    Ok(report)
 }
 
 /// Writes `mesh` as PLY with a colour per vertex (properties `red`, `green` and `blue`), else as

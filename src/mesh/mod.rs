@@ -12,7 +12,8 @@ mod tri_mesh;
 pub(crate) mod triangle;
 
 pub use attribute::{
-    Attribute, AttributeError, Attributes, Domain, MAX_COMPONENTS, NO_ROW, ScalarType, Semantic, Values,
+    Attribute, AttributeError, Attributes, Domain, GltfMaterials, MAX_COMPONENTS, NO_ROW, ScalarType,
+    Semantic, Values,
 };
 pub use scene::{IDENTITY, Instance, SceneTable};
 pub(crate) use surface::Surface;

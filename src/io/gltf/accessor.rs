@@ -140,6 +140,14 @@ impl<'a> Store<'a> {
         Ok(Array { values, num_components, is_normalized })
     }
 
+    /// The bytes of a view that lies within its buffer.
+    pub fn view(&self, index: u64) -> Option<&[u8]> {
+        let view = self.document.buffer_views.get(usize::try_from(index).ok()?)?;
+        let start = usize::try_from(view.byte_offset).ok()?;
+        let end = start.checked_add(usize::try_from(view.byte_length).ok()?)?;
+        self.buffers.get(view.buffer)?.get(start..end)
+    }
+
     /// The `count` elements of `size` bytes that begin at `offset` of a view.
     fn run(
         &self,

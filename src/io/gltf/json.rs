@@ -1,6 +1,7 @@
 //! The parts of a glTF document that we read.
 
 use serde::{Deserialize, de::IgnoredAny};
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
 /// Extensions of any object, by name.
@@ -19,11 +20,13 @@ pub(super) struct Document {
     pub nodes: Vec<Node>,
     pub scenes: Vec<Scene>,
     pub scene: Option<usize>,
-    pub materials: Vec<Material>,
+    pub materials: Vec<Map<String, Value>>,
+    pub textures: Vec<Map<String, Value>>,
+    pub images: Vec<Map<String, Value>>,
+    pub samplers: Vec<Map<String, Value>>,
     pub animations: Vec<IgnoredAny>,
     pub skins: Vec<IgnoredAny>,
     pub cameras: Vec<IgnoredAny>,
-    pub textures: Vec<IgnoredAny>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -121,10 +124,4 @@ pub(super) struct Node {
 #[serde(default)]
 pub(super) struct Scene {
     pub nodes: Vec<usize>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Material {
-    pub name: String,
 }

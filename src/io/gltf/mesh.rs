@@ -37,14 +37,19 @@ struct Column {
 }
 
 /// Reads a mesh.
-pub(super) fn read_mesh(document: &Document, index: usize, store: &mut Store) -> Result<MeshFile, ReadError> {
+pub(super) fn read_mesh(
+    document: &Document,
+    index: usize,
+    material_names: &[String],
+    store: &mut Store,
+) -> Result<MeshFile, ReadError> {
     let place = Place::Part("mesh", index);
     let mesh: &Mesh = document.meshes.get(index).ok_or_else(|| ReadError::syntax(place, "does not exist"))?;
     let mut gathered = Gathered::default();
     for primitive in &mesh.primitives {
         gathered.add(primitive, document, store, place)?;
     }
-    gathered.join(document, store.num_bytes())
+    gathered.join(material_names, store.num_bytes())
 }
 
 impl<'a> Gathered<'a> {
@@ -194,7 +199,7 @@ impl<'a> Gathered<'a> {
     }
 
     /// Joins the vertices at one place, and says of each attribute whether it has seams.
-    fn join(self, document: &Document, num_bytes: usize) -> Result<MeshFile, ReadError> {
+    fn join(self, material_names: &[String], num_bytes: usize) -> Result<MeshFile, ReadError> {
         let mut builder = MeshBuilder::for_file(num_bytes);
         builder.report = self.report;
         let mut vertex_at = HashMap::with_capacity(self.positions.len());
@@ -215,7 +220,7 @@ impl<'a> Gathered<'a> {
             builder.attributes.list.push(attribute);
         }
         builder.triangles.extend(self.triangles.iter().map(|t| t.map(|v| vertex_of[v as usize])));
-        builder.attributes.list.extend(materials(document, self.materials));
+        builder.attributes.list.extend(materials(material_names, self.materials));
         builder.finish()
     }
 }
@@ -284,15 +289,15 @@ fn joined(
 }
 
 /// The materials that triangles have, by name.
-fn materials(document: &Document, mut rows: Vec<u32>) -> Option<Attribute> {
+fn materials(all_names: &[String], mut rows: Vec<u32>) -> Option<Attribute> {
     // Of all materials those that are used, in order of appearance.
-    let mut row_of = vec![NO_ROW; document.materials.len()];
+    let mut row_of = vec![NO_ROW; all_names.len()];
     let mut names = Vec::new();
     for row in rows.iter_mut().filter(|row| **row != NO_ROW) {
         let known = &mut row_of[*row as usize];
         if *known == NO_ROW {
             *known = names.len() as u32;
-            names.push(document.materials[*row as usize].name.clone());
+            names.push(all_names[*row as usize].clone());
         }
         *row = *known;
     }

@@ -6,6 +6,7 @@
 
 mod accessor;
 mod json;
+mod materials;
 mod mesh;
 mod nodes;
 mod places;
@@ -39,16 +40,16 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Scene, ReadErr
     let mut store = Store::new(&document, buffers, bytes.len());
     let mut scene = Scene::default();
     scene.instances = nodes::instances(&document, &mut scene.report)?;
+    let names = materials::names(&document);
     for index in 0..document.meshes.len() {
-        scene.meshes.push(mesh::read_mesh(&document, index, &mut store)?);
+        scene.meshes.push(mesh::read_mesh(&document, index, &names, &mut store)?);
     }
+    scene.gltf_materials = materials::read(&document, &mut store, &mut scene.report)?;
     scene.num_bytes = store.num_bytes();
     for (what, is_there) in [
         ("animations", !document.animations.is_empty()),
         ("skins", !document.skins.is_empty()),
         ("cameras", !document.cameras.is_empty()),
-        ("textures", !document.textures.is_empty()),
-        ("materials but their names", !document.materials.is_empty()),
     ] {
         if is_there {
             scene.report.ignore(what);

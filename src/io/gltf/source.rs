@@ -84,12 +84,13 @@ fn parse_text(text: &[u8], start: Option<usize>) -> Result<Document, ReadError> 
     }
     let meshes = document.meshes.iter_mut().map(|mesh| &mut mesh.name);
     let nodes = document.nodes.iter_mut().map(|node| &mut node.name);
-    let materials = document.materials.iter_mut().map(|material| &mut material.name);
-    for name in meshes.chain(nodes).chain(materials) {
-        let fits = |&at: &usize| name.is_char_boundary(at);
-        name.truncate((0..=MAX_NAME_BYTES.min(name.len())).rev().find(fits).unwrap_or(0));
-    }
+    meshes.chain(nodes).for_each(shorten);
     Ok(document)
+}
+
+pub(super) fn shorten(name: &mut String) {
+    let fits = |&at: &usize| name.is_char_boundary(at);
+    name.truncate((0..=MAX_NAME_BYTES.min(name.len())).rev().find(fits).unwrap_or(0));
 }
 
 /// Collects the buffers of a document: the binary chunk, data in the text, files in the folder `folder`.

@@ -3,10 +3,10 @@
 use super::places::Nodes;
 use crate::{
     io::{Scene, WriteError, WriteReport, texture::oriented},
-    mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, TriMesh, Values},
+    mesh::{Attribute, Attributes, Domain, GltfMaterials, NO_ROW, ScalarType, Semantic, TriMesh, Values},
 };
 use base64::Engine;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::{
     collections::{HashMap, HashSet},
     io::Write,
@@ -36,6 +36,7 @@ pub(in crate::io) fn write(
         return Err(unrepresentable("glTF has no meshes without triangles".to_owned()));
     }
     let mut writer = Writer::default();
+    writer.carry(attributes.gltf_materials.as_ref());
     writer.mesh(mesh, attributes)?;
     writer.finish(out, json!([{ "mesh": 0 }]), &[0], container)
 }
@@ -47,6 +48,7 @@ pub(in crate::io) fn write_scene(
     container: Container,
 ) -> Result<WriteReport, WriteError> {
     let mut writer = Writer::default();
+    writer.carry(scene.gltf_materials.as_ref());
     let mut written = vec![None; scene.meshes.len()];
     for (file, index) in scene.meshes.iter().zip(&mut written) {
         if file.mesh.num_triangles() > 0 {
@@ -244,12 +246,31 @@ struct Writer {
     accessors: Vec<Value>,
     meshes: Vec<Value>,
     materials: Vec<Value>,
+    /// What else there is about materials.
+    lists: Map<String, Value>,
     /// Materials are told apart by their names.
     material_of: HashMap<String, usize>,
     report: WriteReport,
 }
 
 impl Writer {
+    /// Takes over materials as they are.
+    fn carry(&mut self, materials: Option<&GltfMaterials>) {
+        let Some(materials) = materials else { return };
+        self.lists = super::materials::lists(materials, |bytes| {
+            let start = self.begin();
+            self.buffer.extend(bytes);
+            self.end(start, None, None)
+        });
+        if let Some(Value::Array(list)) = self.lists.remove("materials") {
+            self.materials = list;
+        }
+        let name =
+            |material: &Value| material.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
+        self.material_of =
+            self.materials.iter().enumerate().map(|(k, material)| (name(material), k)).collect();
+    }
+
     /// Adds a mesh that has triangles, and says which it is.
     fn mesh(&mut self, mesh: &TriMesh, attributes: &Attributes) -> Result<usize, WriteError> {
         let is_far = |p: &[f64; 3]| p.iter().any(|&c| (c as f32).is_infinite());
@@ -284,7 +305,7 @@ impl Writer {
         roots: &[usize],
         container: Container,
     ) -> Result<WriteReport, WriteError> {
-        let Self { mut buffer, views, accessors, meshes, materials, mut report, .. } = self;
+        let Self { mut buffer, views, accessors, meshes, materials, lists, mut report, .. } = self;
         for names in [&mut report.ignored, &mut report.zeroed] {
             let mut known = HashSet::new();
             names.retain(|name| known.insert(name.clone()));
@@ -304,6 +325,9 @@ impl Writer {
         }
         if !materials.is_empty() {
             document["materials"] = materials.into();
+        }
+        for (name, list) in lists {
+            document[name] = list;
         }
         if container == Container::Text {
             let data = base64::engine::general_purpose::STANDARD.encode(&buffer);
@@ -334,13 +358,15 @@ impl Writer {
         self.buffer.len()
     }
 
-    fn end(&mut self, start: usize, target: u32, stride: Option<usize>) -> usize {
+    fn end(&mut self, start: usize, target: Option<u32>, stride: Option<usize>) -> usize {
         let mut view = json!({
             "buffer": 0,
             "byteOffset": start,
             "byteLength": self.buffer.len() - start,
-            "target": target,
         });
+        if let Some(target) = target {
+            view["target"] = target.into();
+        }
         if let Some(stride) = stride {
             view["byteStride"] = stride.into();
         }
@@ -356,7 +382,7 @@ impl Writer {
     fn positions(&mut self, positions: &[f32]) -> usize {
         let start = self.begin();
         self.buffer.extend(positions.iter().flat_map(|c| c.to_le_bytes()));
-        let view = self.end(start, ARRAY_BUFFER, Some(12));
+        let view = self.end(start, Some(ARRAY_BUFFER), Some(12));
         let bound = |f: fn(f32, f32) -> f32| -> [f64; 3] {
             let (points, _) = positions.as_chunks::<3>();
             std::array::from_fn(|axis| points.iter().map(|p| p[axis]).reduce(f).map_or(0.0, f64::from))
@@ -386,7 +412,7 @@ impl Writer {
             }
             self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
         }
-        let view = self.end(start, ARRAY_BUFFER, Some(stride));
+        let view = self.end(start, Some(ARRAY_BUFFER), Some(stride));
         let code = match scalar {
             ScalarType::I8 => 5120,
             ScalarType::U8 => 5121,
@@ -425,7 +451,7 @@ impl Writer {
             } else {
                 self.buffer.extend(corners.flat_map(u32::to_le_bytes));
             }
-            let view = self.end(start, ELEMENT_ARRAY_BUFFER, None);
+            let view = self.end(start, Some(ELEMENT_ARRAY_BUFFER), None);
             let indices = self.accessor(json!({
                 "bufferView": view,
                 "componentType": if is_short { 5123 } else { 5125 },

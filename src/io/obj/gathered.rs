@@ -257,7 +257,11 @@ impl Gathered {
             self.objects.into_attribute("o", Semantic::Object, &faces),
             self.smoothing.into_attribute("s", Semantic::Generic, &faces),
         ];
-        Attributes { list: list.into_iter().flatten().collect(), material_libraries: self.material_libraries }
+        Attributes {
+            list: list.into_iter().flatten().collect(),
+            material_libraries: self.material_libraries,
+            ..Attributes::default()
+        }
     }
 }
 

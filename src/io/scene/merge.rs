@@ -25,6 +25,7 @@ impl Scene {
         if self.is_single() {
             let mut file = self.meshes.remove(0);
             self.report.ignored.iter().for_each(|name| file.report.ignore(name));
+            file.attributes.gltf_materials = self.gltf_materials;
             return Ok(file);
         }
         self.check_size()?;
@@ -123,6 +124,7 @@ impl Merger {
     pub(super) fn new(scene: &Scene) -> Self {
         let mut builder = MeshBuilder::for_file(scene.num_bytes);
         builder.report = scene.report.clone();
+        builder.attributes.gltf_materials.clone_from(&scene.gltf_materials);
         Self { builder, columns: Vec::new() }
     }
 

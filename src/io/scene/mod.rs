@@ -6,7 +6,7 @@ mod pack;
 pub use pack::SCENE_MESH;
 
 use super::{MeshFile, ReadReport};
-use crate::mesh::{IDENTITY, Instance};
+use crate::mesh::{GltfMaterials, IDENTITY, Instance};
 
 /// Several meshes, and where each of them is.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +16,8 @@ pub struct Scene {
     pub meshes: Vec<MeshFile>,
     /// A mesh may be in several places, or nowhere.
     pub instances: Vec<Instance>,
+    /// How the materials of all meshes look.
+    pub gltf_materials: Option<GltfMaterials>,
     /// What was left out of the scene; the meshes have their own reports.
     pub report: ReadReport,
     /// The size of the file, which the size of what is made of it must be in proportion to.
@@ -23,9 +25,10 @@ pub struct Scene {
 }
 
 impl From<MeshFile> for Scene {
-    fn from(file: MeshFile) -> Self {
+    fn from(mut file: MeshFile) -> Self {
+        let gltf_materials = file.attributes.gltf_materials.take();
         let instances = vec![Instance { mesh: 0, name: String::new(), transform: IDENTITY }];
-        Self { meshes: vec![file], instances, ..Self::default() }
+        Self { meshes: vec![file], instances, gltf_materials, ..Self::default() }
     }
 }
 

@@ -68,8 +68,13 @@ impl Scene {
         });
         // Instances may repeat what the stream has once, but not beyond reason.
         let num_bytes = size_of::<[f64; 6]>() * mesh.num_vertices();
-        let instances = table.instances.clone();
-        Self { meshes: meshes.collect(), instances, report: ReadReport::default(), num_bytes }
+        Self {
+            meshes: meshes.collect(),
+            instances: table.instances.clone(),
+            gltf_materials: attributes.gltf_materials.clone(),
+            report: ReadReport::default(),
+            num_bytes,
+        }
     }
 }
 

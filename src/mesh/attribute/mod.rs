@@ -273,6 +273,20 @@ pub struct Attributes {
     pub list: Vec<Attribute>,
     /// What OBJ's `mtllib` statements name, each as it was written: files of materials.
     pub material_libraries: Vec<String>,
+    /// How the materials of a glTF file look.
+    pub gltf_materials: Option<GltfMaterials>,
+}
+
+/// The materials of a glTF file, told apart by their names, with all that they refer to. Carried, not looked
+/// into.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct GltfMaterials {
+    /// An object of the lists `materials`, `textures`, `images`, `samplers`, `extensionsUsed` and
+    /// `extensionsRequired`, as in glTF, but that `bufferView` of an image is an index into `images` here.
+    pub json: String,
+    /// The bytes of images that are in no file of their own.
+    pub images: Vec<Vec<u8>>,
 }
 
 impl Attributes {
@@ -283,7 +297,7 @@ impl Attributes {
 
     /// Whether there is nothing at all.
     pub fn is_empty(&self) -> bool {
-        self.list.is_empty() && self.material_libraries.is_empty()
+        self.list.is_empty() && self.material_libraries.is_empty() && self.gltf_materials.is_none()
     }
 }
 

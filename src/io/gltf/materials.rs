@@ -1,0 +1,109 @@
+//! Materials, textures and images, carried from file to file as they are.
+
+use super::{accessor::Store, json::Document, source::shorten};
+use crate::{
+    io::{ReadError, ReadReport},
+    mesh::GltfMaterials,
+};
+use serde_json::{Map, Value, json};
+use std::collections::HashSet;
+
+/// The lists of a document that materials refer to each other by.
+const LISTS: [&str; 4] = ["materials", "textures", "images", "samplers"];
+const EXTENSIONS: [&str; 2] = ["extensionsUsed", "extensionsRequired"];
+
+/// The name of each material. Two that share one get numbers.
+pub(super) fn names(document: &Document) -> Vec<String> {
+    let mut known = HashSet::new();
+    let mut unique = |(index, material): (usize, &Map<String, Value>)| {
+        let mut name = material.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
+        shorten(&mut name);
+        if !known.insert(name.clone()) {
+            name = format!("{name}#{index}");
+            known.insert(name.clone());
+        }
+        name
+    };
+    document.materials.iter().enumerate().map(&mut unique).collect()
+}
+
+/// `None` if there is nothing about materials but their names.
+///
+/// # Errors
+/// If there are more images than the buffers have bytes for.
+pub(super) fn read(
+    document: &Document,
+    store: &mut Store,
+    report: &mut ReadReport,
+) -> Result<Option<GltfMaterials>, ReadError> {
+    let is_bare = |material: &Map<String, Value>| material.keys().all(|key| key == "name");
+    if document.materials.iter().all(is_bare) {
+        return Ok(None);
+    }
+    let mut materials = document.materials.clone();
+    for (material, name) in materials.iter_mut().zip(names(document)) {
+        if !name.is_empty() {
+            material.insert("name".to_owned(), name.into());
+        }
+    }
+    let mut embedded = Vec::new();
+    let mut images = document.images.clone();
+    for image in &mut images {
+        let view = image.get("bufferView").and_then(Value::as_u64);
+        let Some(view) = view else { continue };
+        match store.view(view) {
+            Some(bytes) => {
+                let bytes = bytes.to_vec();
+                store.claim(bytes.len() as u64)?;
+                image.insert("bufferView".to_owned(), embedded.len().into());
+                embedded.push(bytes);
+            }
+            None => {
+                report.ignore("images outside their buffers");
+                image.remove("bufferView");
+            }
+        }
+    }
+    let of_materials = |names: &[String]| -> Vec<Value> {
+        let is_ours = |name: &&String| {
+            name.starts_with("KHR_materials_")
+                || name.starts_with("KHR_texture_")
+                || name.contains("_texture_")
+        };
+        names.iter().filter(is_ours).map(|name| name.as_str().into()).collect()
+    };
+    let json = json!({
+        "materials": materials,
+        "textures": document.textures,
+        "images": images,
+        "samplers": document.samplers,
+        "extensionsUsed": of_materials(&document.extensions_used),
+        "extensionsRequired": of_materials(&document.extensions_required),
+    });
+    let mut carried = GltfMaterials::default();
+    carried.json = json.to_string();
+    carried.images = embedded;
+    Ok(Some(carried))
+}
+
+/// The lists for a document, images referring to buffer views that `view` makes of their bytes. What is not of
+/// this form is left out.
+pub(super) fn lists(carried: &GltfMaterials, mut view: impl FnMut(&[u8]) -> usize) -> Map<String, Value> {
+    let Ok(Value::Object(mut json)) = serde_json::from_str(&carried.json) else { return Map::new() };
+    json.retain(|key, value| {
+        let is_list = matches!(value, Value::Array(list) if !list.is_empty());
+        is_list && (LISTS.contains(&key.as_str()) || EXTENSIONS.contains(&key.as_str()))
+    });
+    if let Some(Value::Array(images)) = json.get_mut("images") {
+        for image in images.iter_mut().filter_map(Value::as_object_mut) {
+            let index = image.get("bufferView").and_then(Value::as_u64).map(|index| index as usize);
+            if let Some(index) = index {
+                match carried.images.get(index) {
+                    Some(bytes) => image.insert("bufferView".to_owned(), view(bytes).into()),
+                    None => image.remove("bufferView"),
+                };
+            }
+        }
+    }
+    json
+}
