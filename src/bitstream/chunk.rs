@@ -17,6 +17,9 @@ pub(crate) mod kind {
     pub(crate) const BASE: u8 = b'B';
     pub(crate) const SPLIT: u8 = b'S';
     pub(crate) const REFINE: u8 = b'R';
+    /// Declarations of attributes, and their values behind each pass.
+    pub(crate) const DECLARATIONS: u8 = b'd';
+    pub(crate) const ATTRIBUTES: u8 = b'a';
 
     /// True if a decoder must understand the chunk.
     pub(crate) fn is_critical(kind: u8) -> bool {

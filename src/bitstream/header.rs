@@ -41,6 +41,30 @@ impl Grid {
         (sound && reader.is_empty()).then_some(Self { precision, origin, side })
     }
 
+    /// Middle of the cells of the full grid that share the bits of `cell`, of which there are `precision`.
+    pub(crate) fn position(&self, cell: [i32; 3], precision: u32) -> [f64; 3] {
+        let hidden = self.precision - precision;
+        let half = (f64::from(1_u32 << hidden) - 1.0) * 0.5;
+        let steps = f64::from((1_u32 << self.precision) - 1);
+        std::array::from_fn(|axis| {
+            let fine = f64::from(cell[axis] << hidden) + half;
+            self.origin[axis] + fine / steps * self.side
+        })
+    }
+
+    /// The cell of the full grid that is closest, halves rounded up.
+    #[cfg(feature = "encoder")]
+    pub(crate) fn cell(&self, position: [f64; 3]) -> [i32; 3] {
+        let steps = f64::from((1_u32 << self.precision) - 1);
+        std::array::from_fn(|axis| {
+            let offset = position[axis] - self.origin[axis];
+            let scaled = offset * steps / self.side;
+            // Near the largest double the product overflows where the quotient does not.
+            let scaled = if scaled.is_finite() { scaled } else { offset / self.side * steps };
+            if self.side > 0.0 { (scaled + 0.5).floor().clamp(0.0, steps) as i32 } else { 0 }
+        })
+    }
+
     #[cfg(any(feature = "encoder", test))]
     pub(crate) fn write(&self) -> Vec<u8> {
         let numbers = [self.origin[0], self.origin[1], self.origin[2], self.side];

@@ -51,7 +51,9 @@ pub struct PassInfo {
     pub faces: u32,
     /// Bytes of its chunk: frame, payload and checksum.
     pub bytes: u64,
-    /// Bytes of the stream up to the end of the pass.
+    /// Bytes of the chunk with the values of attributes that follows it, 0 without one.
+    pub attribute_bytes: u64,
+    /// Bytes of the stream up to the end of the pass and of the chunks that belong to it.
     pub end: u64,
     pub(super) row: Pass,
 }
@@ -216,16 +218,23 @@ pub(super) fn printable(kind: u8) -> char {
     if kind.is_ascii_graphic() { char::from(kind) } else { '?' }
 }
 
-/// Turns the table of passes into running totals. `start` is where the first pass begins.
+/// Turns the table of passes into running totals. `start` is where the first pass begins, `attributes` the
+/// payload of the attributes behind each pass: as many rows, or none.
 pub(super) fn list_passes(
     payload: &[u8],
     grid: &Grid,
     start: u64,
+    attributes: &[u32],
 ) -> Result<Vec<PassInfo>, header::BadTable> {
     let rows = header::read_passes(payload, grid)?;
+    if !attributes.is_empty() && attributes.len() != rows.len() {
+        return Err(header::BadTable("attributes are declared for other passes"));
+    }
     let mut passes: Vec<PassInfo> = Vec::with_capacity(rows.len());
-    for row in rows {
+    for (i, row) in rows.into_iter().enumerate() {
         let bytes = frame_size(row.bytes);
+        let attribute_bytes = attributes.get(i).filter(|&&b| b > 0).map_or(0, |&b| frame_size(b));
+        let with_companions = bytes + attribute_bytes;
         let next = match (row.action, passes.last()) {
             (Action::Base { precision }, _) => PassInfo {
                 kind: PassKind::Base,
@@ -234,7 +243,8 @@ pub(super) fn list_passes(
                 vertices: row.vertices,
                 faces: row.faces,
                 bytes,
-                end: start + bytes,
+                attribute_bytes,
+                end: start + with_companions,
                 row,
             },
             (_, None) => return Err(header::BadTable("the first pass is no base mesh")),
@@ -245,7 +255,8 @@ pub(super) fn list_passes(
                 vertices: before.vertices + row.vertices,
                 faces: before.faces + row.faces,
                 bytes,
-                end: before.end + bytes,
+                attribute_bytes,
+                end: before.end + with_companions,
                 row,
             },
         };

@@ -49,15 +49,7 @@ impl<'a> LevelMesh<'a> {
     /// # Panics
     /// If there is no such vertex.
     pub fn position(&self, vertex: usize) -> [f64; 3] {
-        let hidden = self.grid.precision - self.precision;
-        // Middle of the finest cells that share the known bits.
-        let half = (f64::from(1_u32 << hidden) - 1.0) * 0.5;
-        let steps = f64::from((1_u32 << self.grid.precision) - 1);
-        let cell = self.cells[vertex];
-        std::array::from_fn(|axis| {
-            let fine = f64::from(cell[axis] << hidden) + half;
-            self.grid.origin[axis] + fine / steps * self.grid.side
-        })
+        self.grid.position(self.cells[vertex], self.precision)
     }
 
     /// Positions in model units, in order.

@@ -10,6 +10,7 @@ use crate::limits::Limits;
 use crate::passes::GridMesh;
 use crate::passes::work::Work;
 use crate::{DecodeError, TriMesh};
+use std::collections::VecDeque;
 use std::ops::Range;
 
 /// What one finished pass changed.
@@ -66,6 +67,9 @@ pub struct Decoder {
     passes: PassDecoder,
     /// The pass that is half done, and its chunk.
     running: Option<(Running, Chunk)>,
+    /// Kinds of the chunks that must come before the next pass, or behind the last: what belongs to the
+    /// passes that are done.
+    awaited: VecDeque<u8>,
     work_done: u64,
     failed: bool,
 }
@@ -88,6 +92,7 @@ impl Decoder {
             done: 0,
             passes: PassDecoder::new(),
             running: None,
+            awaited: VecDeque::new(),
             work_done: 0,
             failed: false,
         }
@@ -184,8 +189,18 @@ impl Decoder {
                 return Ok(Step::Waiting);
             };
             match chunk.kind {
-                kind::BASE | kind::SPLIT | kind::REFINE => return self.begin(chunk, work),
-                kind::HEADER | kind::PASSES => return Err(out_of_order(&chunk)),
+                kind if self.awaited.front() == Some(&kind) => {
+                    self.awaited.pop_front();
+                    if !self.begin_companion(chunk, work)? {
+                        return Ok(Step::Unfinished);
+                    }
+                }
+                kind::BASE | kind::SPLIT | kind::REFINE if self.awaited.is_empty() => {
+                    return self.begin(chunk, work);
+                }
+                kind::BASE | kind::SPLIT | kind::REFINE | kind::HEADER | kind::PASSES => {
+                    return Err(out_of_order(&chunk));
+                }
                 _ => skip(&chunk)?,
             }
         }
@@ -205,7 +220,7 @@ impl Decoder {
                     self.grid = Some(Grid::read(payload).ok_or(malformed("the header"))?);
                 }
                 (kind::PASSES, Some(grid)) => {
-                    let passes = frame::list_passes(payload, grid, self.frames.position());
+                    let passes = frame::list_passes(payload, grid, self.frames.position(), &[]);
                     let passes = passes.map_err(|e| malformed(e.0))?;
                     self.info = Some(StreamInfo { grid: *grid, provenance: self.provenance, passes });
                 }
@@ -241,12 +256,22 @@ impl Decoder {
             return Ok(Step::Unfinished);
         };
         self.done += 1;
+        self.await_companions();
         Ok(Step::Finished(Update {
             pass,
             vertices: changes.first_vertex..pass.vertices,
             new_triangles: changes.first_new_face..pass.faces,
             rewritten_triangles: changes.rewritten_faces,
         }))
+    }
+
+    /// Notes which chunks belong to the pass that has just been done, and, if it was the last one of the stream,
+    /// which follow that.
+    fn await_companions(&mut self) {}
+
+    /// Takes a chunk that was awaited; false if it is half done.
+    fn begin_companion(&mut self, chunk: Chunk, _work: &mut Work) -> Result<bool, DecodeError> {
+        Err(out_of_order(&chunk))
     }
 
     /// The pass that is decoded next, unless the stream or the wanted level is complete.
@@ -315,9 +340,9 @@ impl Decoder {
         self.done
     }
 
-    /// True once the last pass of the stream, or of the wanted level, has been applied.
+    /// True once the last pass of the stream, or of the wanted level, has been applied, and what belongs to it.
     pub fn is_complete(&self) -> bool {
-        self.info.is_some() && self.next_pass().is_none()
+        self.info.is_some() && self.next_pass().is_none() && self.awaited.is_empty()
     }
 }
 

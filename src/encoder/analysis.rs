@@ -1,7 +1,6 @@
 //! Down the levels: M^L → M^0.
 
 use super::options::{EncodeOptions, Progress};
-use super::quantise::Model;
 use crate::TriMesh;
 use crate::descent::{Descent, Settings};
 use crate::descriptors;
@@ -29,25 +28,31 @@ pub(super) struct Hierarchy {
     pub(super) num_faces: usize,
 }
 
+/// Goes down from `surface`, whose vertices have the places `cells`. Nothing else is looked at, so that a
+/// decoded mesh gives the same levels.
 pub(super) fn analyse(
-    mesh: &TriMesh,
     surface: Surface,
-    model: &Model,
+    cells: &[[i32; 3]],
     options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Hierarchy {
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
-    let mean_edge = descriptors::mean_edge_length(mesh) * model.unit;
-    let geometry = Geometry { grid: &model.cells, positions: &model.positions };
+    // Near 1, so that squares neither overflow nor vanish.
+    let steps_per_unit = f64::from(1_u32 << options.quantization);
+    let positions: Vec<[f64; 3]> = cells.iter().map(|c| c.map(|c| f64::from(c) / steps_per_unit)).collect();
+    let mesh = TriMesh::from_valid_parts(positions, surface.triangles.clone());
+    let mean_edge = descriptors::mean_edge_length(&mesh);
+    let (positions, _) = mesh.into_parts();
+    let geometry = Geometry { grid: cells, positions: &positions };
     let mut descent = Descent::new(surface, geometry, mean_edge, settings(options));
-    let squared_step = model.steps_per_unit().powi(2);
+    let squared_step = steps_per_unit.powi(2);
     let mut records = Vec::new();
-    let mut mean_edges = vec![descent.level().mean_edge(&model.cells)];
+    let mut mean_edges = vec![descent.level().mean_edge(cells)];
     let mut errors = vec![0.0];
     progress(Progress { stage: "levels", fraction: 0.0 });
     while let Some((_, record)) = descent.next() {
         records.push(record);
-        mean_edges.push(descent.level().mean_edge(&model.cells));
+        mean_edges.push(descent.level().mean_edge(cells));
         errors.push(descent.mean_error() * squared_step);
         let fraction = 1.0 - descent.level().vertices.len() as f64 / num_vertices as f64;
         progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });

@@ -2,13 +2,14 @@
 
 mod analysis;
 mod options;
+mod order;
 pub(crate) mod quantise;
 mod schedule;
 mod write;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
-use crate::mesh::repair::{Repaired, repair};
+use crate::mesh::repair::{RepairReport, cut};
 use crate::{EncodeError, Optimize, StreamInfo, TriMesh};
 
 /// Encodes a mesh.
@@ -33,20 +34,31 @@ pub fn encode_with_progress(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Encoded, EncodeError> {
     options.check()?;
-    let Repaired { surface, source, report: repair } = repair(mesh);
-    if surface.triangles.is_empty() {
+    let is_used = |&t: &[u32; 3]| order::is_usable(&t);
+    let num_usable = mesh.triangles().iter().filter(|t| is_used(t)).count();
+    if num_usable == 0 {
         return Err(EncodeError::NoTriangles);
     }
-    if surface.triangles.len().max(surface.corner_of.len()) >= (u32::MAX / 4) as usize {
-        return Err(EncodeError::TooLarge(surface.triangles.len()));
+    if num_usable.max(mesh.num_vertices()) >= (u32::MAX / 4) as usize {
+        return Err(EncodeError::TooLarge(num_usable));
     }
-    let model = quantise::quantise(mesh, &source, options.quantization)?;
-    drop(source);
-    let hierarchy = analysis::analyse(mesh, surface, &model, options, progress);
-    drop(model.positions);
+    let corners = mesh.triangles().iter().filter(|t| is_used(t)).flatten();
+    let grid = quantise::grid_around(corners.map(|&v| mesh.positions()[v as usize]), options.quantization)?;
+    let ordered = order::order(mesh, &grid);
+    let (surface, source) = cut(ordered.triangles, ordered.cells.len());
+    if surface.corner_of.len() >= (u32::MAX / 4) as usize {
+        return Err(EncodeError::TooLarge(surface.corner_of.len()));
+    }
+    let repair = RepairReport {
+        degenerate_faces: mesh.num_triangles() - num_usable,
+        isolated_vertices: mesh.num_vertices() - ordered.cells.len(),
+        repeated_vertices: source.len() - ordered.cells.len(),
+    };
+    let cells: Vec<[i32; 3]> = source.iter().map(|&v| ordered.cells[v as usize]).collect();
+    let hierarchy = analysis::analyse(surface, &cells, options, progress);
     let write = |steps_per_edge| {
         let schedule = schedule::plan(&hierarchy, options.quantization, steps_per_edge);
-        write::write(&hierarchy, &model.cells, &model.grid, &schedule, options, progress)
+        write::write(&hierarchy, &cells, &grid, &schedule, options, progress)
     };
     let mut bytes = write(options.steps_per_edge);
     if options.optimize == Optimize::Size && options.steps_per_edge.is_none() {

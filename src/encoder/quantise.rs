@@ -10,7 +10,6 @@ pub(crate) const LEGALITY_BITS: u32 = 30;
 
 /// The vertices of a surface, on the grid and off it.
 pub(crate) struct Model {
-    pub(crate) grid: Grid,
     pub(crate) cells: Vec<[i32; 3]>,
     /// Coordinates of the input times `unit`.
     pub(crate) positions: Vec<[f64; 3]>,
@@ -18,38 +17,49 @@ pub(crate) struct Model {
     pub(crate) unit: f64,
 }
 
-impl Model {
-    /// Steps of the grid to a unit of `positions`; 0 if all vertices share one place.
-    pub(super) fn steps_per_unit(&self) -> f64 {
-        let side = self.grid.side * self.unit;
-        if side > 0.0 { f64::from((1_u32 << self.grid.precision) - 1) / side } else { 0.0 }
-    }
-}
-
 /// Quantises the vertices `source` of `mesh`; there is at least one.
 pub(crate) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result<Model, EncodeError> {
     let at = |v: u32| mesh.positions()[v as usize];
-    let first = at(source[0]);
-    let (low, high) = source.iter().map(|&v| at(v)).fold((first, first), |(low, high), p| {
-        (std::array::from_fn(|a| low[a].min(p[a])), std::array::from_fn(|a| high[a].max(p[a])))
-    });
-    let side = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
-    if !(side.is_finite() && low.iter().all(|l| (l + side).is_finite())) {
-        return Err(EncodeError::BoundingBox);
-    }
-    let steps = f64::from((1_u32 << precision) - 1);
-    let cell = |x: f64, low: f64| {
-        let scaled = (x - low) * steps / side;
-        let scaled = if scaled.is_finite() { scaled } else { (x - low) / side * steps };
-        if side > 0.0 { (scaled + 0.5).floor().clamp(0.0, steps) as i32 } else { 0 }
-    };
-    let unit = unit_near(side);
+    let grid = grid_around(source.iter().map(|&v| at(v)), precision)?;
+    let unit = unit_near(grid.side);
     Ok(Model {
-        grid: Grid { precision, origin: low.map(|l| l + 0.0), side },
-        cells: source.iter().map(|&v| std::array::from_fn(|a| cell(at(v)[a], low[a]))).collect(),
+        cells: source.iter().map(|&v| grid.cell(at(v))).collect(),
         positions: source.iter().map(|&v| at(v).map(|x| x * unit)).collect(),
         unit,
     })
+}
+
+/// Rounds after which the side of a grid is left as it is.
+const MAX_ROUNDS: usize = 64;
+
+/// The grid of some points, of which there is at least one.
+///
+/// # Errors
+/// If they span more than a double can hold.
+pub(crate) fn grid_around(
+    mut points: impl Iterator<Item = [f64; 3]>,
+    precision: u32,
+) -> Result<Grid, EncodeError> {
+    let first = points.next().unwrap_or_default();
+    let (low, high) = points.fold((first, first), |(low, high), p| {
+        (std::array::from_fn(|a| low[a].min(p[a])), std::array::from_fn(|a| high[a].max(p[a])))
+    });
+    let longest = |high: [f64; 3]| (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
+    let fits = |side: f64| side.is_finite() && low.iter().all(|l| (l + side).is_finite());
+    let mut grid = Grid { precision, origin: low.map(|l| l + 0.0), side: longest(high) };
+    if !fits(grid.side) {
+        return Err(EncodeError::BoundingBox);
+    }
+    // The decoded points must span the same grid, so that encoding them again gives the same bytes; the
+    // sum of origin and side is rounded.
+    for _ in 0..MAX_ROUNDS {
+        let again = longest(grid.position(grid.cell(high), precision));
+        if again == grid.side || !fits(again) {
+            break;
+        }
+        grid.side = again;
+    }
+    Ok(grid)
 }
 
 /// A power of two that brings `side` near 1.
@@ -73,7 +83,28 @@ mod tests {
         let mesh = TriMesh::new(positions, vec![[0, 1, 2]]).unwrap();
         let model = quantise(&mesh, &[0, 1, 2], 2).unwrap();
         assert_eq!(model.cells, [[0, 0, 0], [3, 1, 0], [2, 0, 0]]);
-        assert_eq!((model.grid.side, model.grid.origin), (3.0, [0.0, 10.0, -1.0]));
+        let grid = grid_around(mesh.positions()[..3].iter().copied(), 2).unwrap();
+        assert_eq!((grid.side, grid.origin), (3.0, [0.0, 10.0, -1.0]));
+    }
+
+    #[test]
+    fn decoded_points_have_the_same_grid_and_cells() {
+        // Sums that are rounded: origins that are no binary fractions, three sides of one length.
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 40) as f64 / 1e3 - 7000.0
+        };
+        for _ in 0..2000 {
+            let low: [f64; 3] = std::array::from_fn(|_| random());
+            let extent = random().abs() / 10.0 + 0.1;
+            let points = [low, low.map(|l| l + extent), low.map(|l| l + extent / 3.0)];
+            let grid = grid_around(points.into_iter(), 20).unwrap();
+            assert!((grid.side - extent).abs() <= 4.0 * 7000.0 * f64::EPSILON, "{} for {extent}", grid.side);
+            let decoded = points.map(|p| grid.position(grid.cell(p), 20));
+            assert_eq!(grid_around(decoded.into_iter(), 20).unwrap(), grid);
+            assert_eq!(decoded.map(|p| grid.cell(p)), points.map(|p| grid.cell(p)));
+        }
     }
 
     #[test]

@@ -32,24 +32,7 @@ pub(crate) fn repair(mesh: &TriMesh) -> Repaired {
     let triangles: Vec<[u32; 3]> = mesh.triangles().iter().filter(is_usable).copied().collect();
     let degenerate_faces = mesh.num_triangles() - triangles.len();
 
-    let mut opposite = pair_edges(&triangles, mesh.num_vertices());
-    let (surface, source) = loop {
-        let (cut, source) = name_fans(&triangles, &opposite);
-        let clashing = clashing_faces(&cut, source.len());
-        if clashing.is_empty() {
-            // Fans are single and directed edges unique by now.
-            if let Ok(surface) = Surface::from_triangles(cut, source.len()) {
-                break (surface, source);
-            }
-            debug_assert!(false, "a cut mesh is an oriented surface");
-            (0..triangles.len() as u32).for_each(|face| detach(&mut opposite, face));
-            continue;
-        }
-        for face in clashing {
-            detach(&mut opposite, face);
-        }
-    };
-
+    let (surface, source) = cut(triangles, mesh.num_vertices());
     let mut used = vec![false; mesh.num_vertices()];
     source.iter().for_each(|&v| used[v as usize] = true);
     let used = used.iter().filter(|&&u| u).count();
@@ -59,6 +42,28 @@ pub(crate) fn repair(mesh: &TriMesh) -> Repaired {
         repeated_vertices: source.len() - used,
     };
     Repaired { surface, source, report }
+}
+
+/// Cuts triangles of three different vertices each into sheets: the surface, whose faces keep their order and
+/// rotation, and for each vertex of it the vertex it stands for, ascending.
+pub(crate) fn cut(triangles: Vec<[u32; 3]>, num_vertices: usize) -> (Surface, Vec<u32>) {
+    let mut opposite = pair_edges(&triangles, num_vertices);
+    loop {
+        let (cut, source) = name_fans(&triangles, &opposite);
+        let clashing = clashing_faces(&cut, source.len());
+        if clashing.is_empty() {
+            // Fans are single and directed edges unique by now.
+            if let Ok(surface) = Surface::from_triangles(cut, source.len()) {
+                return (surface, source);
+            }
+            debug_assert!(false, "a cut mesh is an oriented surface");
+            (0..triangles.len() as u32).for_each(|face| detach(&mut opposite, face));
+            continue;
+        }
+        for face in clashing {
+            detach(&mut opposite, face);
+        }
+    }
 }
 
 /// Matches every half-edge with one of opposite direction, in the order of the faces.

@@ -1,0 +1,302 @@
+//! An order of vertices and triangles that does not depend on the file: encoding the same mesh in another
+//! order, or what a decoder made of its stream, gives the same bytes.
+
+use crate::TriMesh;
+use crate::bitstream::header::Grid;
+use rayon::prelude::*;
+
+/// The usable part of a mesh on the grid, in its own order.
+pub(super) struct Ordered {
+    /// Of each vertex that a triangle has: by Morton code, ties by the cells around.
+    pub(super) cells: Vec<[i32; 3]>,
+    /// Each from its smallest vertex on, ascending.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Vertex of the mesh for each vertex.
+    pub(super) vertex_source: Vec<u32>,
+    /// For each triangle three times that of the mesh, and the place there of its first vertex.
+    pub(super) corner_source: Vec<u32>,
+}
+
+/// True for triangles of three different vertices.
+pub(super) fn is_usable(&[a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
+/// Puts the usable triangles of `mesh` and their vertices in order. There are fewer than 2³⁰ of them.
+pub(super) fn order(mesh: &TriMesh, grid: &Grid) -> Ordered {
+    let mut usable: Vec<(u32, [u32; 3])> =
+        (0..).zip(mesh.triangles().iter().copied()).filter(|(_, t)| is_usable(t)).collect();
+    let mut is_used = vec![false; mesh.num_vertices()];
+    usable.iter().flat_map(|(_, t)| t).for_each(|&v| is_used[v as usize] = true);
+
+    // A code of at most 90 bits, then the index.
+    let code = |v: u32| morton(grid.cell(mesh.positions()[v as usize])) << 32 | u128::from(v);
+    let used: Vec<u32> = (0..mesh.num_vertices() as u32).filter(|&v| is_used[v as usize]).collect();
+    let mut keys: Vec<u128> = used.par_iter().map(|&v| code(v)).collect();
+    drop(used);
+    keys.par_sort_unstable();
+    let mut vertex_source: Vec<u32> = keys.iter().map(|&key| key as u32).collect();
+    let mut place = vec![0_u32; mesh.num_vertices()];
+    vertex_source.iter().zip(0..).for_each(|(&v, i)| place[v as usize] = i);
+    usable.iter_mut().flat_map(|(_, t)| t).for_each(|v| *v = place[*v as usize]);
+    if keys.windows(2).any(|pair| pair[0] >> 32 == pair[1] >> 32) {
+        let triangles: Vec<[u32; 3]> = usable.iter().map(|&(_, t)| t).collect();
+        let codes: Vec<u128> = keys.iter().map(|key| key >> 32).collect();
+        let sorted = Ties::new(codes, &triangles).resolve();
+        vertex_source = sorted.iter().map(|&i| vertex_source[i as usize]).collect();
+        let mut place = vec![0_u32; sorted.len()];
+        sorted.iter().zip(0..).for_each(|(&old, new)| place[old as usize] = new);
+        usable.iter_mut().for_each(|(_, t)| *t = t.map(|v| place[v as usize]));
+    }
+    let mut turned: Vec<([u32; 3], u32)> = usable.par_iter().map(|&(face, t)| turned(t, face)).collect();
+    turned.par_sort_unstable();
+    Ordered {
+        cells: vertex_source.iter().map(|&v| grid.cell(mesh.positions()[v as usize])).collect(),
+        triangles: turned.iter().map(|&(t, _)| t).collect(),
+        vertex_source,
+        corner_source: turned.iter().map(|&(_, corner)| corner).collect(),
+    }
+}
+
+/// A triangle from its smallest vertex on, and which corner that is.
+fn turned(t: [u32; 3], face: u32) -> ([u32; 3], u32) {
+    let first = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
+    ([t[first], t[(first + 1) % 3], t[(first + 2) % 3]], 3 * face + first as u32)
+}
+
+/// The bits of the three coordinates (each below 2³⁰) in turn, x highest.
+pub(super) fn morton(cell: [i32; 3]) -> u128 {
+    let [x, y, z] = cell.map(|c| spread(c as u32));
+    x << 2 | y << 1 | z
+}
+
+/// Two zeros in front of each of 30 bits.
+fn spread(c: u32) -> u128 {
+    let half = |bits: u32| {
+        let mut x = u64::from(bits);
+        x = (x | x << 32) & 0x001f_0000_0000_ffff;
+        x = (x | x << 16) & 0x001f_0000_ff00_00ff;
+        x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+        x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+        (x | x << 2) & 0x1249_2492_4924_9249
+    };
+    u128::from(half(c >> 15)) << 45 | u128::from(half(c & 0x7fff))
+}
+
+/// Vertices of equal cells, told apart by what is around them.
+struct Ties<'a> {
+    triangles: &'a [[u32; 3]],
+    codes: Vec<u128>,
+    hash: Vec<u64>,
+    /// Vertices by code, then hash, then index.
+    order: Vec<u32>,
+}
+
+/// Rounds in which all vertices look at their neighbours.
+const ROUNDS: usize = 4;
+/// Vertices that may be looked at to tell the rest apart, times the vertices there are.
+const BUDGET: usize = 24;
+
+impl<'a> Ties<'a> {
+    /// `codes` ascend.
+    fn new(codes: Vec<u128>, triangles: &'a [[u32; 3]]) -> Self {
+        let hash = codes.iter().map(|&code| mix((code >> 64) as u64 ^ mix(code as u64))).collect();
+        let order = (0..codes.len() as u32).collect();
+        Self { triangles, codes, hash, order }
+    }
+
+    fn resolve(mut self) -> Vec<u32> {
+        for _ in 0..ROUNDS {
+            let mut sum = vec![0_u64; self.hash.len()];
+            for &[a, b, c] in self.triangles {
+                for [v, n, p] in [[a, b, c], [b, c, a], [c, a, b]] {
+                    let sum = &mut sum[v as usize];
+                    *sum = sum.wrapping_add(self.corner(n, p));
+                }
+            }
+            self.hash.iter_mut().zip(sum).for_each(|(hash, sum)| *hash = mix(*hash ^ mix(sum)));
+        }
+        self.sort();
+        if self.first_tie(0).is_some() {
+            self.tell_apart();
+        }
+        self.order
+    }
+
+    /// What a corner tells the vertex at it: its two other vertices, in their order.
+    fn corner(&self, n: u32, p: u32) -> u64 {
+        mix(self.hash[n as usize].rotate_left(20).wrapping_add(mix(self.hash[p as usize])))
+    }
+
+    fn key(&self, v: u32) -> (u128, u64, u32) {
+        (self.codes[v as usize], self.hash[v as usize], v)
+    }
+
+    fn sort(&mut self) {
+        let mut order = std::mem::take(&mut self.order);
+        order.sort_unstable_by_key(|&v| self.key(v));
+        self.order = order;
+    }
+
+    /// The first place from `start` on whose vertex looks like the next one.
+    fn first_tie(&self, start: usize) -> Option<usize> {
+        let look = |i: usize| (self.codes[self.order[i] as usize], self.hash[self.order[i] as usize]);
+        (start..self.order.len().saturating_sub(1)).find(|&i| look(i) == look(i + 1))
+    }
+
+    /// Marks the first vertex of a tie, and lets all vertices that are connected with it know how they lie
+    /// to it, until there is no tie. Of vertices that a symmetry of the mesh maps to each other any may be
+    /// the first.
+    fn tell_apart(&mut self) {
+        let corners = CornersAt::new(self.triangles, self.hash.len());
+        let mut budget = BUDGET * self.hash.len();
+        let mut seen = vec![0_u32; self.hash.len()];
+        let mut start = 0;
+        for stamp in 1.. {
+            let Some(tie) = self.first_tie(start) else { return };
+            start = tie;
+            let marked = self.order[tie];
+            self.hash[marked as usize] = mix(!self.hash[marked as usize]);
+            seen[marked as usize] = stamp;
+            let mut changed = vec![marked];
+            let mut first_of_ring = 0;
+            while first_of_ring < changed.len() {
+                let ring = first_of_ring..changed.len();
+                first_of_ring = ring.end;
+                for i in ring.clone() {
+                    for &corner in corners.at(changed[i]) {
+                        for &v in &self.triangles[(corner / 3) as usize] {
+                            if seen[v as usize] != stamp {
+                                seen[v as usize] = stamp;
+                                changed.push(v);
+                            }
+                        }
+                    }
+                }
+                let hashes: Vec<u64> =
+                    changed[first_of_ring..].iter().map(|&v| self.around(v, &corners)).collect();
+                changed[first_of_ring..].iter().zip(hashes).for_each(|(&v, h)| self.hash[v as usize] = h);
+            }
+            // Once more from near to far, so that what lies beside each other is told apart as well.
+            for i in 1..changed.len() {
+                self.hash[changed[i] as usize] = self.around(changed[i], &corners);
+            }
+            let Some(left) = budget.checked_sub(4 * changed.len()) else { return };
+            budget = left;
+            self.sort_some(&changed);
+        }
+    }
+
+    fn around(&self, v: u32, corners: &CornersAt) -> u64 {
+        let tell = |&corner: &u32| {
+            let (t, i) = (self.triangles[(corner / 3) as usize], (corner % 3) as usize);
+            self.corner(t[(i + 1) % 3], t[(i + 2) % 3])
+        };
+        let sum = corners.at(v).iter().map(tell).fold(0_u64, u64::wrapping_add);
+        mix(self.hash[v as usize] ^ mix(sum))
+    }
+
+    /// Sorts the runs of equal codes anew that have one of `changed`.
+    fn sort_some(&mut self, changed: &[u32]) {
+        let mut codes: Vec<u128> = changed.iter().map(|&v| self.codes[v as usize]).collect();
+        codes.sort_unstable();
+        codes.dedup();
+        let mut order = std::mem::take(&mut self.order);
+        for code in codes {
+            // Vertices were numbered by code, so that a run keeps its places.
+            let first = self.codes.partition_point(|&c| c < code);
+            let end = self.codes.partition_point(|&c| c <= code);
+            order[first..end].sort_unstable_by_key(|&v| self.key(v));
+        }
+        self.order = order;
+    }
+}
+
+/// Corners at each vertex.
+struct CornersAt {
+    first: Vec<u32>,
+    corners: Vec<u32>,
+}
+
+impl CornersAt {
+    fn new(triangles: &[[u32; 3]], num_vertices: usize) -> Self {
+        let mut first = vec![0_u32; num_vertices + 1];
+        triangles.as_flattened().iter().for_each(|&v| first[v as usize + 1] += 1);
+        (0..num_vertices).for_each(|v| first[v + 1] += first[v]);
+        let mut end = first.clone();
+        let mut corners = vec![0_u32; 3 * triangles.len()];
+        for (corner, &v) in triangles.as_flattened().iter().enumerate() {
+            corners[end[v as usize] as usize] = corner as u32;
+            end[v as usize] += 1;
+        }
+        Self { first, corners }
+    }
+
+    fn at(&self, v: u32) -> &[u32] {
+        &self.corners[self.first[v as usize] as usize..self.first[v as usize + 1] as usize]
+    }
+}
+
+/// Scatters the bits of a number (the finaliser of SplitMix64).
+fn mix(x: u64) -> u64 {
+    let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_interleave_all_bits() {
+        let slow = |cell: [i32; 3]| {
+            (0..30).rev().flat_map(|bit| cell.map(|c| c >> bit & 1)).fold(0_u128, |code, b| code << 1 | b as u128)
+        };
+        for cell in [[0, 0, 0], [1, 2, 4], [0x3fff_ffff; 3], [0x1234_5678, 0x0fed_cba9, 0x2aaa_5555]] {
+            assert_eq!(morton(cell), slow(cell), "{cell:?}");
+        }
+    }
+
+    /// Triangles in cells of each vertex and the order of equal cells: what the bytes depend on.
+    fn ordered(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> (Vec<[i32; 3]>, Vec<[u32; 3]>) {
+        let mesh = TriMesh::new(positions.to_vec(), triangles.to_vec()).unwrap();
+        let grid = Grid { precision: 4, origin: [0.0; 3], side: 15.0 };
+        let ordered = order(&mesh, &grid);
+        for (t, &corner) in ordered.triangles.iter().zip(&ordered.corner_source) {
+            let source = mesh.triangles()[(corner / 3) as usize];
+            let turned = [0, 1, 2].map(|i| source[(corner as usize + i) % 3]);
+            assert_eq!(t.map(|v| ordered.vertex_source[v as usize]), turned);
+        }
+        (ordered.cells, ordered.triangles)
+    }
+
+    #[test]
+    fn shuffling_changes_nothing_even_where_all_cells_are_equal() {
+        // Two octahedra at one place, and a strip that goes over itself.
+        let octahedron = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [5, 2, 1], [5, 3, 2], [5, 4, 3], [5, 1, 4]];
+        let mut triangles: Vec<[u32; 3]> = octahedron.to_vec();
+        triangles.extend(octahedron.map(|t| t.map(|v| v + 6)));
+        triangles.extend([[12, 13, 14], [14, 13, 15], [14, 15, 16], [1, 1, 2]]);
+        for place in [[3.0; 3], [0.0; 3]] {
+            let positions = [place; 18];
+            let wanted = ordered(&positions, &triangles);
+            assert_eq!(wanted.0.len(), 17);
+            let mut seed = 1_u64;
+            for _ in 0..50 {
+                let mut name: Vec<u32> = (0..18).collect();
+                let mut shuffled = triangles.clone();
+                let mut random = |n: usize| {
+                    seed = mix(seed);
+                    (seed % n as u64) as usize
+                };
+                (1..18).for_each(|i| name.swap(i, random(i + 1)));
+                (1..shuffled.len()).for_each(|i| shuffled.swap(i, random(i + 1)));
+                shuffled.iter_mut().for_each(|t| t.rotate_left(random(3)));
+                shuffled.iter_mut().flatten().for_each(|v| *v = name[*v as usize]);
+                assert_eq!(ordered(&positions, &shuffled), wanted);
+            }
+        }
+    }
+}
