@@ -1166,8 +1166,21 @@ def refine(coder, models, mixed, mesh):
 # 3 Framing and 4 header chunks
 
 
-def chunks(stream):
-    """Kind and payload of every whole chunk."""
+def crc16(data):
+    """The checksum of X.25."""
+    crc = 0xFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x8408 if crc & 1 else 0)
+    return crc ^ 0xFFFF
+
+
+assert crc16(b"123456789") == 0x906E
+
+
+def chunks(stream, rows):
+    """Kind and payload of every whole chunk. `rows`: those of the passes still to come, once they are known."""
     require(stream[:3] == b"LWC", "not a stream")
     require(stream[3:4] == b"\x01", "another version")
     reader = Reader(stream)
@@ -1176,49 +1189,98 @@ def chunks(stream):
         start = reader.at
         try:
             kind = chr(reader.u8())
-            payload = reader.take(reader.varint())
+            if kind in "BSR":
+                require(rows and rows[0][0] == kind, "a pass out of order")
+                payload = reader.take(rows.pop(0)[3])
+            else:
+                payload = reader.take(reader.varint())
             end = reader.at
-            checksum = struct.unpack("<I", reader.take(4))[0]
+            if len(payload) < 4000:
+                checksum, wanted = struct.unpack("<H", reader.take(2))[0], crc16(stream[start:end])
+            else:
+                checksum, wanted = struct.unpack("<I", reader.take(4))[0], zlib.crc32(stream[start:end])
         except TooShort:
             return
-        require(zlib.crc32(stream[start:end]) == checksum, "chunk %r is damaged" % kind)
+        require(checksum == wanted, "chunk %r is damaged" % kind)
         yield kind, payload
 
 
 def read_grid(payload):
     reader = Reader(payload)
     flags, precision = reader.u8(), reader.u8()
-    require(flags < 2 and 1 <= precision <= 30, "the header")
-    *origin, side = struct.unpack("<4d", reader.take(32)) if flags else struct.unpack("<4f", reader.take(16))
+    require(flags < 4 and 1 <= precision <= 30, "the header")
+    *origin, side = struct.unpack("<4d", reader.take(32)) if flags & 1 else struct.unpack("<4f", reader.take(16))
     sound = side >= 0 and all(math.isfinite(x) and math.isfinite(x + side) for x in origin)
     require(sound and math.isfinite(side) and reader.is_empty(), "the header")
     return precision, origin, side
 
 
+class Bits:
+    """The bit string of the table of passes."""
+
+    def __init__(self, payload):
+        self.bits = [byte >> i & 1 for byte in payload for i in range(7, -1, -1)]
+        self.at = 0
+
+    def bit(self):
+        require(self.at < len(self.bits), "the table of passes is cut")
+        self.at += 1
+        return self.bits[self.at - 1]
+
+    def number(self, fixed):
+        prefix = 0
+        while self.bit():
+            prefix += 1
+            require(prefix <= 32, "a number is too large")
+        value = 0
+        for _ in range(prefix + fixed):
+            value = 2 * value + self.bit()
+        return value + ((1 << prefix) - 1 << fixed)
+
+    def near(self, expected):
+        expected = min(expected, (1 << 32) - 1)
+        folded = self.number(max(expected.bit_length() - 4, 0))
+        value = expected - (folded + 1) // 2 if folded % 2 else expected + folded // 2
+        require(0 <= value < 1 << 32, "a number is too large")
+        return value
+
+    def is_at_end(self):
+        rest = self.bits[self.at :]
+        return len(rest) < 8 and not any(rest)
+
+
 def read_table(payload, grid_precision):
     """Rows of kind, vertices, faces, bytes; and the precision of the base mesh."""
-    reader = Reader(payload)
-    count = reader.varint()
+    bits = Bits(payload)
+    count = bits.number(4)
     require(count <= 4096, "too many passes")
-    precision = base_precision = reader.varint()
+    precision = base_precision = bits.number(2)
     require(1 <= precision <= grid_precision, "the precision of the base mesh")
-    rows = [("B", reader.varint(), reader.varint(), reader.varint())]
-    vertices, faces = rows[0][1:3]
+    vertices = bits.near(36)
+    faces = bits.near(max(2 * vertices - 4, 0))
+    rows = [("B", vertices, faces, bits.near(2 * vertices))]
     require(vertices >= 3 and faces >= 1, "the mesh is empty")
     touched = [max(vertices, faces)]
+    odd, edge, split, refine = (3, 8), (0, 1), (3, 1), (1, 2)
+    share = lambda part, whole: whole * part[0] // part[1]
     for _ in range(count):
-        more = reader.varint()
-        if more:
-            boundary = reader.varint()
-            require(boundary <= more, "more boundary vertices than vertices")
-            rows.append(("S", more, 2 * more - boundary, reader.varint()))
-            touched.append(more)
-        else:
+        if bits.bit():
             precision += 1
-            rows.append(("R", 0, 0, reader.varint()))
+            size = bits.near(share(refine, vertices))
+            refine = size, vertices
+            rows.append(("R", 0, 0, size))
             touched.append(vertices)
+        else:
+            more = bits.near(share(odd, vertices))
+            require(more > 0, "a split without vertices")
+            boundary = bits.near(share(edge, more))
+            require(boundary <= more, "more boundary vertices than vertices")
+            size = bits.near(share(split, more))
+            odd, edge, split = (more, vertices), (boundary, more), (size, more)
+            rows.append(("S", more, 2 * more - boundary, size))
+            touched.append(more)
         vertices, faces = vertices + rows[-1][1], faces + rows[-1][2]
-    require(reader.is_empty() and precision <= grid_precision, "the table of passes")
+    require(bits.is_at_end() and precision <= grid_precision, "the table of passes")
     require(max(vertices, faces) < (1 << 30) - 1, "the mesh is too large")
     require(all(t <= 64 * (row[3] + 1) for t, row in zip(touched, rows)), "too many vertices for the bytes")
     return rows, base_precision
@@ -1229,17 +1291,17 @@ def decode(stream):
     grid = rows = mesh = None
     level_, done = 0, 0
     connectivity, coordinates, refinement = ConnectivityModels(), (GuessModels(), Residuals()), (GuessModels(), Mixed(4, 0.4, 250))
-    for kind, payload in chunks(stream):
+    ahead = []
+    for kind, payload in chunks(stream, ahead):
         if kind == "H":
             require(grid is None, "a chunk out of order")
             grid = read_grid(payload)
         elif kind == "L":
             require(grid and rows is None, "a chunk out of order")
             rows, precision = read_table(payload, grid[0])
+            ahead.extend(rows)
         elif kind in "BSR":
-            require(rows is not None, "a chunk out of order")
-            expected, vertices, faces, size = rows[done]
-            require((kind, len(payload)) == (expected, size), "a pass differs from the table of passes")
+            _, vertices, faces, _ = rows[done]
             coder = RangeDecoder(payload)
             if kind == "B":
                 mesh = Base(coder, vertices, faces, precision).mesh

@@ -2,10 +2,10 @@
 //!
 //! Each takes any bytes and panics if a promise of the library does not hold.
 
-use crate::bitstream::bytes::{Reader, write_varint};
 use crate::bitstream::chunk::{self, Frame, kind};
-use crate::bitstream::header::{self, Action, Grid, Pass};
+use crate::bitstream::header::{self, Action, Grid, Header, Pass};
 use crate::bitstream::mixture::Mixture;
+use crate::bitstream::pass_table;
 use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
 use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
 use crate::descriptors::{Descriptor, Window};
@@ -305,48 +305,41 @@ fn stream_from(data: &[u8]) -> Vec<u8> {
 /// Repairs signature, lengths, checksums, and the sizes in the table of passes.
 fn reframe(data: &[u8]) -> Vec<u8> {
     let mut rest = data.get(chunk::SIGNATURE.len() + 1..).unwrap_or_default();
+    let mut grid = None;
+    let mut table = Vec::new();
+    let mut done = 0;
     let mut chunks: Vec<(u8, Vec<u8>)> = Vec::new();
     while let Some((&kind, after)) = rest.split_first() {
-        let payload = match chunk::parse(rest) {
+        let next = table.get(done).map(|row: &Pass| (kind, row.bytes));
+        let payload = match chunk::parse(rest, next) {
             Frame::Chunk { payload, size, .. } => {
                 rest = &rest[size..];
                 payload
             }
-            Frame::Incomplete { .. } | Frame::BadLength => {
+            Frame::Incomplete { .. } | Frame::BadLength | Frame::OutOfPlace => {
                 rest = &[];
                 after
             }
         };
+        done += usize::from(kind::is_pass(kind));
+        match (kind, grid) {
+            (kind::HEADER, None) => grid = Header::read(payload).map(|header| header.grid),
+            (kind::PASSES, Some(grid)) => {
+                table = pass_table::read_passes(payload, &grid).unwrap_or_default();
+            }
+            _ => {}
+        }
         chunks.push((kind, payload.to_vec()));
     }
-    let is_pass = |k: u8| matches!(k, kind::BASE | kind::SPLIT | kind::REFINE);
-    let sizes: Vec<u32> = chunks.iter().filter(|c| is_pass(c.0)).map(|c| c.1.len() as u32).collect();
+    let sizes = chunks.iter().filter(|c| kind::is_pass(c.0)).map(|c| c.1.len() as u32);
+    table.iter_mut().zip(sizes).for_each(|(row, size)| row.bytes = size);
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
     for (kind, payload) in &chunks {
-        let repaired = (*kind == kind::PASSES).then(|| resize_passes(payload, &sizes)).flatten();
+        let repaired = (*kind == kind::PASSES && !table.is_empty()).then(|| pass_table::write_passes(&table));
         chunk::write(&mut bytes, *kind, repaired.as_ref().unwrap_or(payload));
     }
     bytes
-}
-
-/// The table of passes with other sizes; `None` if it makes no sense.
-fn resize_passes(payload: &[u8], sizes: &[u32]) -> Option<Vec<u8>> {
-    let mut reader = Reader::new(payload);
-    let mut table = Vec::new();
-    let count = reader.varint()?;
-    write_varint(&mut table, count);
-    for pass in 0..=count as usize {
-        let head = reader.varint()?;
-        write_varint(&mut table, head);
-        let more = if pass == 0 { 2 } else { usize::from(head > 0) };
-        for _ in 0..more {
-            write_varint(&mut table, reader.varint()?);
-        }
-        let size = reader.varint()?;
-        write_varint(&mut table, sizes.get(pass).copied().unwrap_or(size));
-    }
-    Some(table)
 }
 
 /// A well-framed stream whose counts and payloads are the input.
@@ -379,8 +372,8 @@ fn made_up(data: &[u8]) -> Vec<u8> {
     }
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
-    chunk::write(&mut bytes, kind::HEADER, &grid.write());
-    chunk::write(&mut bytes, kind::PASSES, &header::write_passes(&passes));
+    chunk::write(&mut bytes, kind::HEADER, &Header { grid, is_usual: true }.write());
+    chunk::write(&mut bytes, kind::PASSES, &pass_table::write_passes(&passes));
     for (pass, payload) in passes.iter().zip(payloads) {
         let kind = match pass.action {
             Action::Base { .. } => kind::BASE,

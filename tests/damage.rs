@@ -22,8 +22,10 @@ fn streams() -> Vec<(&'static str, Vec<u8>)> {
         options.quantization = quantization;
         options.steps_per_edge = Some(5.0);
         options.levels = Some(4);
+        // Not the usual one, so that it is written.
+        options.growth = 2.0;
         let stream = encode(&mesh, &options).unwrap().bytes;
-        assert!((150..700).contains(&stream.len()), "{name}: {} bytes", stream.len());
+        assert!((100..700).contains(&stream.len()), "{name}: {} bytes", stream.len());
         cases.push((name, stream));
     }
     cases
@@ -230,7 +232,8 @@ fn chunks_out_of_place_never_make_a_mesh_that_is_not_one() {
                 a.is_pass() && b.is_pass() && (a.kind, a.payload.len()) != (b.kind, b.payload.len())
             });
             if is_pass_of_another_shape {
-                assert!(matches!(error, Some(DecodeError::Malformed { .. })), "{what}: {error:?}");
+                // The table says how many bytes are read.
+                assert!(error.is_some() || !decoder.is_complete(), "{what}");
             }
         }
     }
@@ -448,7 +451,7 @@ fn huge_claims_in_few_bytes_are_refused() {
         ("base of many bits", claim(12, &[(&[u32::MAX, 3, 1], 9), (&[0], 4), (&[0], 4)], 40)),
         ("refined beyond the grid", claim(2, &[(&[2, 3, 1], 9), (&[0], 4)], 40)),
         ("too many passes", {
-            let mut table = chunks::varint(u32::MAX);
+            let mut table = chunks::write_count(u32::MAX.into());
             table.extend([12, 3, 1, 9]);
             chunks::join(&[chunks::header(12), Chunk { kind: b'L', payload: table }])
         }),
@@ -468,11 +471,10 @@ fn huge_claims_in_few_bytes_are_refused() {
 #[test]
 fn claims_that_match_the_size_are_held_to_the_limits() {
     // The table is consistent, the announced payloads are large, and only the first byte arrives.
-    let stream = claim(12, &[(&[12, 30_000_000, 60_000_000], 1_000_000)], 0);
-    let base = stream.len() - 6;
-    let mut announced = stream[..base].to_vec();
-    announced.push(b'B');
-    announced.extend(chunks::varint(1_000_000));
+    let claim_with = |sent| claim(12, &[(&[12, 30_000_000, 60_000_000], 1_000_000)], sent);
+    let stream = claim_with(0);
+    let mut announced = stream[..stream.len() - 2].to_vec();
+    assert_eq!(announced.last(), Some(&b'B'));
     let (decoder, error) = decode_all(&announced, Limits::default(), "not there yet");
     assert_eq!((error, decoder.passes_done()), (None, 0));
     assert_eq!(decoder.info().unwrap().passes()[0].vertices, 30_000_000);
@@ -480,12 +482,11 @@ fn claims_that_match_the_size_are_held_to_the_limits() {
     let (_, error) = decode_all(&announced, Limits::small(), "not there yet");
     assert_eq!(error, None);
 
-    let mut chunks = chunks::split(&stream);
-    chunks[2].payload = vec![0; 1_000_000];
-    let (_, error) = decode_all(&chunks::join(&chunks), Limits::small(), "too many vertices");
+    let whole = claim_with(1_000_000);
+    let (_, error) = decode_all(&whole, Limits::small(), "too many vertices");
     assert!(matches!(error, Some(DecodeError::Limit { what: "vertices", .. })), "{error:?}");
     let limits = Limits { max_vertices: u32::MAX, ..Limits::small() };
-    let (_, error) = decode_all(&chunks::join(&chunks), limits, "too much memory");
+    let (_, error) = decode_all(&whole, limits, "too much memory");
     assert!(matches!(error, Some(DecodeError::Limit { what: "memory", .. })), "{error:?}");
 }
 
@@ -494,7 +495,7 @@ fn a_chunk_longer_than_the_memory_allowed_is_refused_at_its_length() {
     let (_, stream) = streams().swap_remove(0);
     let clean = Clean::of(&stream);
     let mut longer = stream[..clean.ends[0]].to_vec();
-    longer.extend([b'S', 0xff, 0xff, 0xff, 0xff, 0x0f]);
+    longer.extend([b'z', 0xff, 0xff, 0xff, 0xff, 0x0f]);
     let (decoder, error) = decode_all(&longer, Limits::small(), "a chunk of four gigabytes");
     assert!(matches!(error, Some(DecodeError::Limit { what: "memory", .. })), "{error:?}");
     assert_eq!(decoder.passes_done(), 1);

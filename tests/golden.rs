@@ -99,9 +99,11 @@ fn the_golden_streams_cover_the_syntax() {
         };
         let last_split = kinds.iter().rposition(|&k| k == PassKind::Split);
         for (feature, is_there) in [
-            ("narrow header", payload(b'H')[0] == 0),
-            ("wide header", payload(b'H')[0] == 1),
+            ("narrow header", payload(b'H')[0] & 1 == 0),
+            ("wide header", payload(b'H')[0] & 1 == 1),
             ("30 bits", info.precision() == 30),
+            ("provenance in the header", payload(b'H')[0] & 2 == 2),
+            ("provenance in a chunk", chunks.iter().any(|c| c.kind == b'p')),
             ("no provenance", info.descriptor_code().is_none()),
             ("balanced", info.partition_code() == Some(0)),
             ("algorithm1", info.partition_code() == Some(1)),

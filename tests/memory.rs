@@ -105,7 +105,7 @@ fn streams_that_claim_much_in_few_bytes_get_nothing() {
     let billion = 1 << 30;
     let mut many_passes = vec![row(&[12, 3, 1], 9)];
     many_passes.extend((0..4096).map(|_| row(&[64, 0], 1)));
-    let mut too_many_passes = chunks::varint(u32::MAX);
+    let mut too_many_passes = chunks::write_count(u32::MAX.into());
     too_many_passes.extend([12, 3, 1, 9]);
     let cases = [
         ("a base of a billion", claim(&[row(&[12, billion, billion], 9)], &[triangle()])),
@@ -122,7 +122,7 @@ fn streams_that_claim_much_in_few_bytes_get_nothing() {
             chunks::join(&[chunks::header(12), Chunk { kind: b'L', payload: too_many_passes }])
         }),
         ("a chunk of four gigabytes", {
-            let mut stream = claim(&[row(&[12, 3, 1], 9)], &[]);
+            let mut stream = claim(&[row(&[12, 3, 1], u32::MAX)], &[]);
             stream.extend([b'B', 0xff, 0xff, 0xff, 0xff, 0x0f]);
             stream
         }),

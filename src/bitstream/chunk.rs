@@ -6,8 +6,24 @@ use super::bytes::Reader;
 pub(crate) const SIGNATURE: [u8; 3] = *b"LWC";
 /// Version written, and the only one read.
 pub(crate) const VERSION: u8 = 1;
-/// Bytes of the checksum behind each payload.
-pub(crate) const CHECKSUM_BYTES: usize = 4;
+/// Payloads of at least this many bytes have the longer checksum.
+const LONG_PAYLOAD: usize = 4000;
+
+/// Bytes of the checksum behind a payload.
+fn checksum_bytes(payload: usize) -> usize {
+    if payload < LONG_PAYLOAD { 2 } else { 4 }
+}
+
+/// The checksum of `bytes`, of which `payload` are the payload: CRC-16 as in X.25, or CRC-32. The first
+/// finds all errors of three bits up to 4,093 bytes, and all within 16 neighbouring bits.
+fn checksum(bytes: &[u8], payload: usize) -> u32 {
+    if checksum_bytes(payload) == 4 {
+        return crc32fast::hash(bytes);
+    }
+    let step = |crc: u16, _| if crc & 1 == 1 { crc >> 1 ^ 0x8408 } else { crc >> 1 };
+    let crc = bytes.iter().fold(0xffff, |crc, &byte| (0..8).fold(crc ^ u16::from(byte), step));
+    u32::from(!crc)
+}
 
 /// Kinds of chunks. Lower case: may be skipped by who does not know it.
 pub(crate) mod kind {
@@ -21,6 +37,11 @@ pub(crate) mod kind {
     pub(crate) const DECLARATIONS: u8 = b'd';
     pub(crate) const ATTRIBUTES: u8 = b'a';
 
+    /// True if the chunk is a pass: the table of passes knows its length.
+    pub(crate) fn is_pass(kind: u8) -> bool {
+        matches!(kind, BASE | SPLIT | REFINE)
+    }
+
     /// True if a decoder must understand the chunk.
     pub(crate) fn is_critical(kind: u8) -> bool {
         kind.is_ascii_uppercase()
@@ -33,47 +54,75 @@ pub(crate) enum Frame<'a> {
     Incomplete { needed: usize },
     /// A length that no encoder writes.
     BadLength,
+    /// A pass that the table does not name next.
+    OutOfPlace,
     /// A whole chunk; `intact` tells whether its checksum holds.
     Chunk { kind: u8, payload: &'a [u8], size: usize, intact: bool },
 }
 
+/// Kind and payload length of the pass that comes next, as far as the table of passes has come.
+pub(crate) type NextPass = Option<(u8, u32)>;
+
 /// Looks at the chunk that `bytes` begin with.
-pub(crate) fn parse(bytes: &[u8]) -> Frame<'_> {
-    const LONGEST_HEAD: usize = 6;
-    let head = &bytes[..bytes.len().min(LONGEST_HEAD)];
-    let Some(&kind) = head.first() else {
-        return Frame::Incomplete { needed: 1 };
+pub(crate) fn parse(bytes: &[u8], next_pass: NextPass) -> Frame<'_> {
+    let (kind, start, length) = match parse_head(bytes, next_pass) {
+        Ok(head) => head,
+        Err(frame) => return frame,
     };
-    let mut reader = Reader::new(&head[1..]);
-    let Some(length) = reader.varint() else {
-        let unfinished = head.len() < LONGEST_HEAD && head[1..].iter().all(|b| b & 0x80 != 0);
-        return if unfinished { Frame::Incomplete { needed: head.len() + 1 } } else { Frame::BadLength };
-    };
-    let payload_start = 1 + varint_size(length);
-    let payload_end = payload_start.saturating_add(length as usize);
-    let size = payload_end.saturating_add(CHECKSUM_BYTES);
+    let payload_end = start.saturating_add(length);
+    let size = payload_end.saturating_add(checksum_bytes(length));
     if bytes.len() < size {
         return Frame::Incomplete { needed: size };
     }
-    let checksum = crc32fast::hash(&bytes[..payload_end]).to_le_bytes();
-    Frame::Chunk {
-        kind,
-        payload: &bytes[payload_start..payload_end],
-        size,
-        intact: bytes[payload_end..size] == checksum,
+    let mut found = [0; 4];
+    found[..size - payload_end].copy_from_slice(&bytes[payload_end..size]);
+    let intact = u32::from_le_bytes(found) == checksum(&bytes[..payload_end], length);
+    Frame::Chunk { kind, payload: &bytes[start..payload_end], size, intact }
+}
+
+/// Kind, start and length of the payload.
+fn parse_head(bytes: &[u8], next_pass: NextPass) -> Result<(u8, usize, usize), Frame<'_>> {
+    const LONGEST_HEAD: usize = 6;
+    let head = &bytes[..bytes.len().min(LONGEST_HEAD)];
+    let Some(&kind) = head.first() else {
+        return Err(Frame::Incomplete { needed: 1 });
+    };
+    if kind::is_pass(kind) {
+        let length = next_pass.filter(|&(next, _)| next == kind).map(|(_, length)| length as usize);
+        return length.map(|length| (kind, 1, length)).ok_or(Frame::OutOfPlace);
     }
+    let mut reader = Reader::new(&head[1..]);
+    let Some(length) = reader.varint() else {
+        let unfinished = head.len() < LONGEST_HEAD && head[1..].iter().all(|b| b & 0x80 != 0);
+        let needed = head.len() + 1;
+        return Err(if unfinished { Frame::Incomplete { needed } } else { Frame::BadLength });
+    };
+    Ok((kind, payload_start(kind, length as usize), length as usize))
 }
 
-/// Kind and payload so far of the incomplete chunk that `bytes` begin with.
-pub(crate) fn parse_cut(bytes: &[u8]) -> Option<(u8, &[u8])> {
-    let (&kind, rest) = bytes.split_first()?;
-    let mut reader = Reader::new(rest);
-    let length = reader.varint()? as usize;
-    let payload = &bytes[1 + varint_size(length as u32)..];
-    Some((kind, &payload[..payload.len().min(length)]))
+/// Bytes before the payload of a chunk.
+pub(crate) fn payload_start(kind: u8, length: usize) -> usize {
+    if kind::is_pass(kind) { 1 } else { 1 + varint_size(length as u32) }
 }
 
-pub(crate) fn varint_size(value: u32) -> usize {
+/// Payload so far of the incomplete chunk that `bytes` begin with, if it is the next pass.
+pub(crate) fn parse_cut(bytes: &[u8], next_pass: NextPass) -> Option<&[u8]> {
+    let (kind, start, length) = parse_head(bytes, next_pass).ok()?;
+    let payload = &bytes[start..];
+    kind::is_pass(kind).then_some(&payload[..payload.len().min(length)])
+}
+
+/// Bytes of a pass with a payload of `length` bytes.
+pub(crate) fn pass_size(length: u32) -> u64 {
+    1 + u64::from(length) + checksum_bytes(length as usize) as u64
+}
+
+/// Bytes of a chunk that is no pass, with a payload of `length` bytes.
+pub(crate) fn other_size(length: u32) -> u64 {
+    pass_size(length) + varint_size(length) as u64
+}
+
+fn varint_size(value: u32) -> usize {
     (32 - (value | 1).leading_zeros() as usize).div_ceil(7)
 }
 
@@ -82,10 +131,12 @@ pub(crate) fn varint_size(value: u32) -> usize {
 pub(crate) fn write(bytes: &mut Vec<u8>, kind: u8, payload: &[u8]) {
     let start = bytes.len();
     bytes.push(kind);
-    super::bytes::write_varint(bytes, payload.len() as u32);
+    if !kind::is_pass(kind) {
+        super::bytes::write_varint(bytes, payload.len() as u32);
+    }
     bytes.extend_from_slice(payload);
-    let checksum = crc32fast::hash(&bytes[start..]);
-    bytes.extend_from_slice(&checksum.to_le_bytes());
+    let checksum = checksum(&bytes[start..], payload.len());
+    bytes.extend_from_slice(&checksum.to_le_bytes()[..checksum_bytes(payload.len())]);
 }
 
 #[cfg(test)]
@@ -94,21 +145,39 @@ mod tests {
 
     #[test]
     fn a_chunk_returns_from_any_number_of_bytes_or_asks_for_more() {
-        for length in [0, 1, 127, 128, 20_000] {
+        for (kind, length) in
+            [(kind::SPLIT, 0), (b'x', 1), (kind::BASE, 127), (b'x', 128), (kind::SPLIT, 20_000)]
+        {
             let payload = vec![7; length];
+            let is_pass = kind::is_pass(kind);
+            let next = is_pass.then_some((kind, length as u32));
             let mut bytes = Vec::new();
-            write(&mut bytes, kind::SPLIT, &payload);
+            write(&mut bytes, kind, &payload);
+            if is_pass {
+                assert_eq!(bytes.len() as u64, pass_size(length as u32));
+            }
             for cut in 0..bytes.len() {
-                assert!(matches!(parse(&bytes[..cut]), Frame::Incomplete { needed } if needed > cut));
-                let head = bytes.len() - CHECKSUM_BYTES - length;
-                let so_far = &payload[..cut.saturating_sub(head).min(length)];
-                assert_eq!(parse_cut(&bytes[..cut]), (cut >= head).then_some((kind::SPLIT, so_far)));
+                assert!(matches!(parse(&bytes[..cut], next), Frame::Incomplete { needed } if needed > cut));
+                let so_far = &payload[..cut.saturating_sub(1).min(length)];
+                assert_eq!(parse_cut(&bytes[..cut], next), (is_pass && cut > 0).then_some(so_far));
             }
             bytes.push(99);
-            let Frame::Chunk { kind, payload: read, size, intact } = parse(&bytes) else { panic!() };
-            assert_eq!((kind, read, size, intact), (kind::SPLIT, &payload[..], bytes.len() - 1, true));
+            let Frame::Chunk { kind: found, payload: read, size, intact } = parse(&bytes, next) else {
+                panic!()
+            };
+            assert_eq!((found, read, size, intact), (kind, &payload[..], bytes.len() - 1, true));
             bytes[1] ^= 1;
-            assert!(!matches!(parse(&bytes), Frame::Chunk { intact: true, .. }));
+            assert!(!matches!(parse(&bytes, next), Frame::Chunk { intact: true, .. }));
+            if is_pass {
+                assert!(matches!(parse(&bytes, None), Frame::OutOfPlace));
+                assert!(matches!(parse(&bytes, Some((kind::REFINE, 0))), Frame::OutOfPlace));
+            }
         }
+    }
+
+    #[test]
+    fn checksums_are_the_usual_ones() {
+        assert_eq!(checksum(b"123456789", 9), 0x906e);
+        assert_eq!(checksum(b"123456789", LONG_PAYLOAD), 0xcbf4_3926);
     }
 }

@@ -1,10 +1,12 @@
 //! Bytes, chunks, and the entropy coder. Knows no mesh.
 
+pub(crate) mod bits;
 pub(crate) mod bytes;
 pub(crate) mod chunk;
 pub(crate) mod header;
 pub(crate) mod mixer;
 pub(crate) mod mixture;
+pub(crate) mod pass_table;
 pub(crate) mod range_coder;
 pub(crate) mod residual;
 pub(crate) mod tables;

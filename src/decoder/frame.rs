@@ -1,8 +1,9 @@
 //! From bytes to chunks: what a stream announces, and where its passes begin.
 
 use crate::DecodeError;
-use crate::bitstream::chunk::{self, Frame};
-use crate::bitstream::header::{self, Action, Grid, Pass, Provenance};
+use crate::bitstream::chunk::{self, Frame, NextPass};
+use crate::bitstream::header::{Action, Grid, Pass, Provenance};
+use crate::bitstream::pass_table::{self, BadTable};
 use crate::limits::Limits;
 
 /// What a stream says of itself before its first pass.
@@ -49,13 +50,20 @@ pub struct PassInfo {
     pub vertices: u32,
     /// Triangles after the pass.
     pub faces: u32,
-    /// Bytes of its chunk: frame, payload and checksum.
+    /// Bytes of its chunk: kind, payload and checksum.
     pub bytes: u64,
     /// Bytes of the chunk with the values of attributes that follows it, 0 without one.
     pub attribute_bytes: u64,
     /// Bytes of the stream up to the end of the pass and of the chunks that belong to it.
     pub end: u64,
     pub(super) row: Pass,
+}
+
+impl PassInfo {
+    /// What its chunk must be.
+    pub(super) fn frame(&self) -> (u8, u32) {
+        (self.row.action.kind(), self.row.bytes)
+    }
 }
 
 impl StreamInfo {
@@ -163,11 +171,15 @@ impl FrameReader {
     }
 
     /// The next complete chunk, `None` while bytes are missing.
-    pub(super) fn next_chunk(&mut self, limits: &Limits) -> Result<Option<Chunk>, DecodeError> {
+    pub(super) fn next_chunk(
+        &mut self,
+        limits: &Limits,
+        next_pass: NextPass,
+    ) -> Result<Option<Chunk>, DecodeError> {
         if !self.has_signature && !self.read_signature()? {
             return Ok(None);
         }
-        match chunk::parse(&self.buffer[self.read..]) {
+        match chunk::parse(&self.buffer[self.read..], next_pass) {
             Frame::Incomplete { needed } => {
                 Limits::check("memory", needed as u64, limits.max_memory)?;
                 Ok(None)
@@ -175,12 +187,15 @@ impl FrameReader {
             Frame::BadLength => {
                 Err(DecodeError::Malformed { what: "the length of a chunk", offset: self.offset })
             }
+            Frame::OutOfPlace => {
+                Err(DecodeError::Malformed { what: "a pass out of order", offset: self.offset })
+            }
             Frame::Chunk { kind, intact: false, .. } => {
                 Err(DecodeError::Checksum { kind: printable(kind), offset: self.offset })
             }
             Frame::Chunk { kind, payload, size, .. } => {
-                let end = self.read + size - chunk::CHECKSUM_BYTES;
-                let chunk = Chunk { kind, offset: self.offset, payload: end - payload.len()..end };
+                let start = self.read + chunk::payload_start(kind, payload.len());
+                let chunk = Chunk { kind, offset: self.offset, payload: start..start + payload.len() };
                 self.read += size;
                 self.offset += size as u64;
                 Ok(Some(chunk))
@@ -188,9 +203,9 @@ impl FrameReader {
         }
     }
 
-    /// Kind and payload so far of the chunk that is not complete yet.
-    pub(super) fn cut_chunk(&self) -> Option<(u8, &[u8])> {
-        chunk::parse_cut(&self.buffer[self.read..])
+    /// Payload so far of the next pass, if its chunk has begun but is not complete.
+    pub(super) fn cut_pass(&self, next_pass: NextPass) -> Option<&[u8]> {
+        chunk::parse_cut(&self.buffer[self.read..], next_pass)
     }
 
     fn read_signature(&mut self) -> Result<bool, DecodeError> {
@@ -225,15 +240,15 @@ pub(super) fn list_passes(
     grid: &Grid,
     start: u64,
     attributes: &[u32],
-) -> Result<Vec<PassInfo>, header::BadTable> {
-    let rows = header::read_passes(payload, grid)?;
+) -> Result<Vec<PassInfo>, BadTable> {
+    let rows = pass_table::read_passes(payload, grid)?;
     if !attributes.is_empty() && attributes.len() != rows.len() {
-        return Err(header::BadTable("attributes are declared for other passes"));
+        return Err(BadTable("attributes are declared for other passes"));
     }
     let mut passes: Vec<PassInfo> = Vec::with_capacity(rows.len());
     for (i, row) in rows.into_iter().enumerate() {
-        let bytes = frame_size(row.bytes);
-        let attribute_bytes = attributes.get(i).filter(|&&b| b > 0).map_or(0, |&b| frame_size(b));
+        let bytes = chunk::pass_size(row.bytes);
+        let attribute_bytes = attributes.get(i).filter(|&&b| b > 0).map_or(0, |&b| chunk::other_size(b));
         let with_companions = bytes + attribute_bytes;
         let next = match (row.action, passes.last()) {
             (Action::Base { precision }, _) => PassInfo {
@@ -247,7 +262,7 @@ pub(super) fn list_passes(
                 end: start + with_companions,
                 row,
             },
-            (_, None) => return Err(header::BadTable("the first pass is no base mesh")),
+            (_, None) => return Err(BadTable("the first pass is no base mesh")),
             (action, Some(before)) => PassInfo {
                 kind: if action == Action::Split { PassKind::Split } else { PassKind::Refine },
                 level: before.level + u32::from(action == Action::Split),
@@ -263,8 +278,4 @@ pub(super) fn list_passes(
         passes.push(next);
     }
     Ok(passes)
-}
-
-fn frame_size(payload: u32) -> u64 {
-    1 + chunk::varint_size(payload) as u64 + u64::from(payload) + chunk::CHECKSUM_BYTES as u64
 }

@@ -5,7 +5,7 @@ use super::level_mesh::LevelMesh;
 use super::passes::{self, PassDecoder};
 use super::running::Running;
 use crate::bitstream::chunk::kind;
-use crate::bitstream::header::{Grid, Provenance};
+use crate::bitstream::header::{Header, Provenance};
 use crate::limits::Limits;
 use crate::passes::GridMesh;
 use crate::passes::work::Work;
@@ -59,7 +59,7 @@ pub struct Decoder {
     limits: Limits,
     last_level: u32,
     frames: FrameReader,
-    grid: Option<Grid>,
+    header: Option<Header>,
     provenance: Option<Provenance>,
     info: Option<StreamInfo>,
     /// Passes done.
@@ -86,7 +86,7 @@ impl Decoder {
             limits: options.limits,
             last_level: options.level.unwrap_or(u32::MAX),
             frames: FrameReader::new(),
-            grid: None,
+            header: None,
             provenance: None,
             info: None,
             done: 0,
@@ -185,7 +185,8 @@ impl Decoder {
         }
         self.read_info()?;
         while self.info.is_some() && !self.is_complete() {
-            let Some(chunk) = self.frames.next_chunk(&self.limits)? else {
+            let next = self.next_pass().map(PassInfo::frame);
+            let Some(chunk) = self.frames.next_chunk(&self.limits, next)? else {
                 return Ok(Step::Waiting);
             };
             match chunk.kind {
@@ -210,24 +211,25 @@ impl Decoder {
     /// Reads chunks up to the table of passes.
     pub(super) fn read_info(&mut self) -> Result<(), DecodeError> {
         while self.info.is_none() {
-            let Some(chunk) = self.frames.next_chunk(&self.limits)? else {
+            let Some(chunk) = self.frames.next_chunk(&self.limits, None)? else {
                 return Ok(());
             };
             let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
             let payload = self.frames.payload(&chunk);
-            match (chunk.kind, &self.grid) {
+            match (chunk.kind, &self.header) {
                 (kind::HEADER, None) => {
-                    self.grid = Some(Grid::read(payload).ok_or(malformed("the header"))?);
+                    let header = Header::read(payload).ok_or(malformed("the header"))?;
+                    let usual = header.is_usual.then_some(Provenance::USUAL);
+                    self.provenance = self.provenance.or(usual);
+                    self.header = Some(header);
                 }
-                (kind::PASSES, Some(grid)) => {
+                (kind::PASSES, Some(Header { grid, .. })) => {
                     let passes = frame::list_passes(payload, grid, self.frames.position(), &[]);
                     let passes = passes.map_err(|e| malformed(e.0))?;
                     self.info = Some(StreamInfo { grid: *grid, provenance: self.provenance, passes });
                 }
                 (kind::PROVENANCE, _) => self.provenance = Provenance::read(payload),
-                (kind::HEADER | kind::PASSES | kind::BASE | kind::SPLIT | kind::REFINE, _) => {
-                    return Err(out_of_order(&chunk));
-                }
+                (kind::HEADER | kind::PASSES, _) => return Err(out_of_order(&chunk)),
                 _ => skip(&chunk)?,
             }
         }
@@ -238,9 +240,6 @@ impl Decoder {
         let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
         let pass = self.next_pass().ok_or(malformed("a pass that was not announced"))?;
         let payload = self.frames.payload(&chunk);
-        if chunk.kind != pass.row.action.kind() || payload.len() != pass.row.bytes as usize {
-            return Err(malformed("a pass differs from the table of passes"));
-        }
         passes::check_limits(pass, &self.limits, self.frames.buffered())?;
         self.advance(Running::new(payload), chunk, work)
     }
@@ -316,11 +315,9 @@ impl Decoder {
 
     fn mesh_with_cut(&self) -> Option<(&PassInfo, GridMesh)> {
         let pass = self.next_pass().filter(|_| self.running.is_none())?;
-        let (kind, payload) = self.frames.cut_chunk()?;
+        let payload = self.frames.cut_pass(Some(pass.frame()))?;
         // The coder reads four bytes ahead: fewer decide nothing.
-        let is_next =
-            kind == pass.row.action.kind() && (5..=pass.row.bytes as usize).contains(&payload.len());
-        if self.failed || !is_next {
+        if self.failed || payload.len() < 5 {
             return None;
         }
         // Two copies that take as much again as the mesh itself.

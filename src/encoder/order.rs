@@ -252,7 +252,10 @@ mod tests {
     #[test]
     fn codes_interleave_all_bits() {
         let slow = |cell: [i32; 3]| {
-            (0..30).rev().flat_map(|bit| cell.map(|c| c >> bit & 1)).fold(0_u128, |code, b| code << 1 | b as u128)
+            (0..30)
+                .rev()
+                .flat_map(|bit| cell.map(|c| c >> bit & 1))
+                .fold(0_u128, |code, b| code << 1 | b as u128)
         };
         for cell in [[0, 0, 0], [1, 2, 4], [0x3fff_ffff; 3], [0x1234_5678, 0x0fed_cba9, 0x2aaa_5555]] {
             assert_eq!(morton(cell), slow(cell), "{cell:?}");
@@ -275,7 +278,8 @@ mod tests {
     #[test]
     fn shuffling_changes_nothing_even_where_all_cells_are_equal() {
         // Two octahedra at one place, and a strip that goes over itself.
-        let octahedron = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [5, 2, 1], [5, 3, 2], [5, 4, 3], [5, 1, 4]];
+        let octahedron =
+            [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [5, 2, 1], [5, 3, 2], [5, 4, 3], [5, 1, 4]];
         let mut triangles: Vec<[u32; 3]> = octahedron.to_vec();
         triangles.extend(octahedron.map(|t| t.map(|v| v + 6)));
         triangles.extend([[12, 13, 14], [14, 13, 15], [14, 15, 16], [1, 1, 2]]);

@@ -4,7 +4,8 @@ use super::analysis::{ANALYSIS_SHARE, Hierarchy};
 use super::options::{EncodeOptions, Progress};
 use super::schedule::{Schedule, Step};
 use crate::bitstream::chunk::{self, kind};
-use crate::bitstream::header::{self, Action, Grid, MAX_VERTICES_PER_BYTE, Pass, Provenance};
+use crate::bitstream::header::{Action, Grid, Header, MAX_VERTICES_PER_BYTE, Pass, Provenance};
+use crate::bitstream::pass_table;
 use crate::bitstream::range_coder::RangeEncoder;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::passes::GridMesh;
@@ -47,19 +48,21 @@ fn assemble(
 ) -> Vec<u8> {
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
-    chunk::write(&mut bytes, kind::HEADER, &grid.write());
-    if !hierarchy.records.is_empty() {
-        let provenance = Provenance {
-            descriptor: options.descriptor as u8,
-            partition: options.partition as u8,
-            rings: options.window.rings,
-            radius: options.window.radius,
-            growth: options.growth,
-        };
+    let provenance = Provenance {
+        descriptor: options.descriptor as u8,
+        partition: options.partition as u8,
+        rings: options.window.rings,
+        radius: options.window.radius,
+        growth: options.growth,
+    };
+    let has_levels = !hierarchy.records.is_empty();
+    let is_usual = has_levels && provenance == Provenance::USUAL;
+    chunk::write(&mut bytes, kind::HEADER, &Header { grid: *grid, is_usual }.write());
+    if has_levels && !is_usual {
         chunk::write(&mut bytes, kind::PROVENANCE, &provenance.write());
     }
     let rows: Vec<Pass> = passes.iter().map(|(row, _)| *row).collect();
-    chunk::write(&mut bytes, kind::PASSES, &header::write_passes(&rows));
+    chunk::write(&mut bytes, kind::PASSES, &pass_table::write_passes(&rows));
     for (row, payload) in passes {
         chunk::write(&mut bytes, row.action.kind(), payload);
     }

@@ -2,7 +2,7 @@
 //! mesh are walked from gate to gate and grouped into patches.
 
 use super::patch::{CLOSED, Patches};
-use super::polygon::{FITS, Fit, Polygon};
+use super::polygon::{FITS, Fit, Polygon, Triangle};
 use super::work::{SWEPT_PER_UNIT, Work};
 use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::bitstream::mixer::{MixedBit, PlainBits};
@@ -335,15 +335,14 @@ impl<'a> Walk<'a> {
     fn decide<B: BitCoder>(&mut self, coder: &mut B, corner: u32, is_seed: bool) -> Result<(), Malformed> {
         let face = corner / 3;
         let wanted = self.target.map_or(NOT_IN_PATCH, |t| t.patch_of_face[face as usize]);
-        self.polygon = Polygon::of_triangle(
-            [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c)),
-            [next(corner), prev(corner), corner].map(|c| self.live_valence_at(c)),
-            usize::from(!is_seed),
-        );
-        self.fit = Fit::Is;
+        let start = Triangle {
+            vertices: [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c)),
+            valences: [next(corner), prev(corner), corner].map(|c| self.live_valence_at(c)),
+        };
         self.growths = [None; 2];
         if !is_seed {
-            self.growths = [self.growth(next(corner), 0), self.growth(prev(corner), 1)];
+            self.growths =
+                [self.first_growth(&start, next(corner), 1), self.first_growth(&start, prev(corner), 2)];
         }
         let (contexts, set) = self.face_contexts(corner, is_seed);
         let tables = Tables::get();
@@ -359,6 +358,8 @@ impl<'a> Walk<'a> {
             return Ok(());
         }
         self.check_room()?;
+        self.polygon = Polygon::of_triangle(&start, usize::from(!is_seed));
+        self.fit = Fit::Is;
         self.take(face);
         self.frontier.extend([prev(corner), next(corner)]);
         if is_seed {
@@ -384,19 +385,28 @@ impl<'a> Walk<'a> {
         live.clamp(0, MAX_VALENCE as i32) as u8
     }
 
-    /// What growing over the edge that `inside` faces would make of the patch, `passed` edges on.
-    /// `None` if it cannot.
-    fn growth(&self, inside: u32, passed: usize) -> Option<Growth> {
+    /// The corner beyond the edge that `inside` faces, if a patch can grow over it.
+    fn undecided_across(&self, inside: u32) -> Option<u32> {
         let beyond = self.surface.across(inside);
-        if beyond == NO_CORNER || self.faces[(beyond / 3) as usize] != Face::Undecided {
-            return None;
-        }
-        let fit = self.grown_polygon(beyond, passed).fit(self.positions);
-        Some(Growth { inside, fit })
+        let is_open = beyond != NO_CORNER && self.faces[(beyond / 3) as usize] == Face::Undecided;
+        is_open.then_some(beyond)
     }
 
-    fn grown_polygon(&self, beyond: u32, passed: usize) -> Polygon {
-        self.polygon.grown(passed, self.surface.vertex(beyond), self.live_valence_at(beyond))
+    /// What growing over edge `edge` of the first triangle would make of a patch.
+    fn first_growth(&self, start: &Triangle, inside: u32, edge: usize) -> Option<Growth> {
+        let beyond = self.undecided_across(inside)?;
+        let (tip, valence) = (self.surface.vertex(beyond), self.live_valence_at(beyond));
+        Some(Growth { inside, fit: start.fit_grown(edge, tip, valence, self.positions) })
+    }
+
+    /// What growing over the edge that `inside` faces would make of the patch. `None` if it cannot.
+    fn growth(&self, inside: u32) -> Option<Growth> {
+        let beyond = self.undecided_across(inside)?;
+        Some(Growth { inside, fit: self.grown_polygon(beyond).fit(self.positions) })
+    }
+
+    fn grown_polygon(&self, beyond: u32) -> Polygon {
+        self.polygon.grown(self.surface.vertex(beyond), self.live_valence_at(beyond))
     }
 
     fn mark(&mut self, face: u32, state: Face) {
@@ -419,14 +429,14 @@ impl<'a> Walk<'a> {
     fn code_growth<B: BitCoder>(&mut self, coder: &mut B, inside: u32, wanted: u32) -> bool {
         let known =
             |inside: u32| self.growths.iter().flatten().find(|growth| growth.inside == inside).copied();
-        let Some(Growth { fit, .. }) = known(inside).or_else(|| self.growth(inside, 0)) else { return false };
+        let Some(Growth { fit, .. }) = known(inside).or_else(|| self.growth(inside)) else { return false };
         let after = self.frontier.last().and_then(|&after| known(after));
         let beyond = self.surface.across(inside);
         let (contexts, set) = self.growth_contexts(inside, beyond, fit, fit_of(after));
         let grows = self.target.is_some_and(|t| t.patch_of_face[(beyond / 3) as usize] == wanted);
         let grows = self.models.grow.code(coder, Tables::get(), contexts, &[], set, grows);
         if grows {
-            (self.polygon, self.fit) = (self.grown_polygon(beyond, 0), fit);
+            (self.polygon, self.fit) = (self.grown_polygon(beyond), fit);
             self.growths = [None; 2];
         }
         grows

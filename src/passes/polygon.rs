@@ -4,6 +4,42 @@
 
 use crate::mesh::ears::{Bytes, Hole, MAX_CORNERS, squared_distance};
 
+/// The first triangle of a patch, counter-clockwise from the gate on.
+pub(super) struct Triangle {
+    pub(super) vertices: [u32; 3],
+    /// Edges at each corner, those of the triangle too.
+    pub(super) valences: [u8; 3],
+}
+
+impl Triangle {
+    /// Whether it would fit together with the one over the edge that starts at corner `edge`.
+    ///
+    /// As [`Polygon::fit`] of the four corners: the ears are the tip and the corner that faces the edge.
+    #[inline]
+    pub(super) fn fit_grown(&self, edge: usize, tip: u32, tip_valence: u8, positions: &[[i32; 3]]) -> Fit {
+        let (start, end, apex) = (edge, (edge + 1) % 3, (edge + 2) % 3);
+        // Without the edges inside: an ear has one triangle, the others have two.
+        let valence = |corner: usize, triangles: i32| i32::from(self.valences[corner]) - triangles;
+        let [a, b, c, d] = [valence(apex, 1), valence(start, 2), i32::from(tip_valence) - 1, valence(end, 2)];
+        let (of_ears, of_others) = (a.min(c), b.min(d));
+        if of_ears != of_others {
+            return if of_ears < of_others { Fit::Is } else { Fit::Not };
+        }
+        let position = |corner: usize| positions[self.vertices[corner] as usize];
+        let cut = squared_distance(position(start), position(end));
+        let other = squared_distance(position(apex), positions[tip as usize]);
+        // The first of least valence from the gate on, the tip standing behind the edge's start.
+        let first_is_ear = || {
+            let mut from_gate = [(b, false); 4];
+            from_gate[apex + usize::from(apex > start)] = (a, true);
+            from_gate[start + 1] = (c, true);
+            from_gate[end + usize::from(end > start)] = (d, false);
+            from_gate.iter().find(|corner| corner.0 == of_ears).is_some_and(|corner| corner.1)
+        };
+        if cut < other || cut == other && first_is_ear() { Fit::Is } else { Fit::Not }
+    }
+}
+
 /// Counter-clockwise from the gate on.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Polygon {
@@ -24,10 +60,10 @@ const SPARE: u8 = 8;
 impl Polygon {
     /// A triangle; its edges before corner `cursor` stay.
     #[inline]
-    pub(super) fn of_triangle(vertices: [u32; 3], valences: [u8; 3], cursor: usize) -> Self {
+    pub(super) fn of_triangle(triangle: &Triangle, cursor: usize) -> Self {
         let mut polygon = Self { triangles: Bytes::ones(3), len: 3, cursor, ..Self::default() };
-        polygon.vertices[..3].copy_from_slice(&vertices);
-        for (i, valence) in valences.into_iter().enumerate() {
+        polygon.vertices[..3].copy_from_slice(&triangle.vertices);
+        for (i, valence) in triangle.valences.into_iter().enumerate() {
             polygon.valences.add(i, valence + SPARE);
         }
         polygon
@@ -39,14 +75,14 @@ impl Polygon {
         self.cursor += 1;
     }
 
-    /// The polygon with the triangle over the edge that is looked at when `passed` more stay.
+    /// The polygon with the triangle over the edge that is looked at.
     #[inline]
-    pub(super) fn grown(&self, passed: usize, tip: u32, valence: u8) -> Self {
+    pub(super) fn grown(&self, tip: u32, valence: u8) -> Self {
         let len = self.len;
         if len == 0 || len == MAX_CORNERS {
             return Self::default();
         }
-        let cursor = self.cursor + passed;
+        let cursor = self.cursor;
         let at = cursor + 1;
         let vertices = std::array::from_fn(|i| match i {
             i if i < at => self.vertices[i],
@@ -130,14 +166,16 @@ mod tests {
         for _ in 0..2000 {
             let positions: [[i32; 3]; 4] = std::array::from_fn(|_| std::array::from_fn(|_| random(3) as i32));
             let valences: [u8; 4] = std::array::from_fn(|_| 4 + random(3) as u8);
-            let start = Polygon::of_triangle([0, 1, 2], [valences[0], valences[1], valences[2]], 0);
-            let quad = start.grown(random(3) as usize, 3, valences[3]);
+            let start = Triangle { vertices: [0, 1, 2], valences: [valences[0], valences[1], valences[2]] };
+            let edge = random(3) as usize;
+            let quad = Polygon::of_triangle(&start, edge).grown(3, valences[3]);
 
             let position = |corner: usize| positions[quad.vertices[corner] as usize];
             let hole = Hole::new(quad.valences.minus(quad.triangles), 4);
             let ear = hole.next_ear(position, |_| true).expect("there are four");
             let is_own = quad.triangles.get(ear.corner) == 1;
             assert_eq!(quad.fit(&positions) == Fit::Is, is_own);
+            assert_eq!(start.fit_grown(edge, 3, valences[3], &positions) == Fit::Is, is_own);
             fits += u32::from(is_own);
         }
         assert!((200..1800).contains(&fits), "{fits}");

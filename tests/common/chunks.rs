@@ -22,12 +22,33 @@ impl Chunk {
 
     pub fn bytes(&self) -> Vec<u8> {
         let mut bytes = vec![self.kind];
-        bytes.extend(varint(self.payload.len() as u32));
+        if !self.is_pass() {
+            bytes.extend(varint(self.payload.len() as u32));
+        }
         bytes.extend_from_slice(&self.payload);
-        let checksum = crc32fast::hash(&bytes);
-        bytes.extend(checksum.to_le_bytes());
+        if self.payload.len() < 4000 {
+            bytes.extend(crc16(&bytes).to_le_bytes());
+        } else {
+            bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+        }
         bytes
     }
+}
+
+/// The checksum of X.25.
+fn crc16(bytes: &[u8]) -> u16 {
+    let mut crc = 0xffff_u16;
+    for &byte in bytes {
+        crc ^= u16::from(byte);
+        for _ in 0..8 {
+            let carry = crc & 1;
+            crc >>= 1;
+            if carry == 1 {
+                crc ^= 0x8408;
+            }
+        }
+    }
+    !crc
 }
 
 /// A number as LEB128.
@@ -60,9 +81,15 @@ pub fn split(stream: &[u8]) -> Vec<Chunk> {
     assert!(stream.starts_with(SIGNATURE));
     let mut rest = &stream[SIGNATURE.len()..];
     let mut chunks = Vec::new();
+    let mut sizes = Vec::new().into_iter();
     while let Some((&kind, mut after)) = rest.split_first() {
-        let length = take_varint(&mut after) as usize;
-        let chunk = Chunk::new(kind, &after[..length]);
+        let is_pass = Chunk::new(kind, &[]).is_pass();
+        let length = if is_pass { sizes.next().unwrap() } else { take_varint(&mut after) };
+        let chunk = Chunk::new(kind, &after[..length as usize]);
+        if kind == b'L' {
+            let rows = read_table(&chunk.payload);
+            sizes = rows.iter().map(|row| row.size).collect::<Vec<_>>().into_iter();
+        }
         let (bytes, next) = rest.split_at(chunk.bytes().len());
         assert_eq!(bytes, chunk.bytes(), "a chunk of other bytes");
         chunks.push(chunk);
@@ -85,27 +112,105 @@ pub struct Row {
     pub size: u32,
 }
 
-pub fn read_table(mut payload: &[u8]) -> Vec<Row> {
-    let count = take_varint(&mut payload);
-    let rows = (0..=count)
-        .map(|pass| {
-            let first = take_varint(&mut payload);
-            let mut head = vec![first];
-            let more = if pass == 0 { 2 } else { u32::from(first > 0) };
-            head.extend((0..more).map(|_| take_varint(&mut payload)));
-            Row { head, size: take_varint(&mut payload) }
-        })
-        .collect();
-    assert!(payload.is_empty());
+/// The bits of a payload, read or written: both sides of the table in one.
+struct Bits {
+    bits: Vec<bool>,
+    next: usize,
+    is_reading: bool,
+}
+
+impl Bits {
+    fn bit(&mut self, bit: bool) -> bool {
+        if !self.is_reading {
+            self.bits.push(bit);
+        }
+        self.next += 1;
+        self.bits[self.next - 1]
+    }
+
+    fn into_bytes(self) -> Vec<u8> {
+        let byte = |bits: &[bool]| bits.iter().zip((0..8).rev()).map(|(&bit, i)| u8::from(bit) << i).sum();
+        self.bits.chunks(8).map(byte).collect()
+    }
+
+    fn number(&mut self, fixed: u32, value: u64) -> u64 {
+        let mut prefix = 0_u32;
+        while self.bit(value >= ((2_u64 << prefix) - 1) << fixed) {
+            prefix += 1;
+        }
+        let first = ((1_u64 << prefix) - 1) << fixed;
+        let rest = value.saturating_sub(first);
+        let bits = (0..prefix + fixed).rev();
+        first + bits.fold(0, |read, i| read << 1 | u64::from(self.bit(rest >> i & 1 == 1)))
+    }
+
+    fn near(&mut self, expected: u64, value: u32) -> u32 {
+        let expected = expected.min(u64::from(u32::MAX)) as i64;
+        let fixed = (64 - expected.leading_zeros()).saturating_sub(4);
+        let change = i64::from(value) - expected;
+        let folded = if change < 0 { -2 * change - 1 } else { 2 * change } as u64;
+        let folded = self.number(fixed, folded) as i64;
+        (expected + if folded % 2 == 0 { folded / 2 } else { -(folded + 1) / 2 }) as u32
+    }
+}
+
+/// Goes through a table; without rows it reads them.
+fn table(bits: &mut Bits, wanted: &[Row]) -> Vec<Row> {
+    let read = bits.is_reading;
+    let count = bits.number(4, (wanted.len() as u64).saturating_sub(1)) as usize;
+    let mut rows: Vec<Row> = Vec::new();
+    let zeros = Row { head: vec![0; 3], size: 0 };
+    // Numerator and denominator of what is expected: see section 4.3.
+    let (mut odd, mut boundary, mut split, mut refine) = ((3, 8), (0, 1), (3, 1), (1, 2));
+    let mut there = 0_u64;
+    let of = |(a, b): (u64, u64), n: u64| n * a / b.max(1);
+    for pass in 0..=count {
+        let row = if read { &zeros } else { &wanted[pass] };
+        let head = &row.head;
+        if pass == 0 {
+            let precision = bits.number(2, head[0].into()) as u32;
+            let vertices = bits.near(36, head[1]);
+            let v = u64::from(vertices);
+            let faces = bits.near((2 * v).min(u64::from(u32::MAX)).saturating_sub(4), head[2]);
+            let size = bits.near(2 * v, row.size);
+            rows.push(Row { head: vec![precision, vertices, faces], size });
+            there = v;
+        } else if bits.bit(*head == [0]) {
+            let size = bits.near(of(refine, there), row.size);
+            refine = (size.into(), there);
+            rows.push(Row { head: vec![0], size });
+        } else {
+            let vertices = bits.near(of(odd, there), head[0]);
+            let v = u64::from(vertices);
+            let on_boundary = bits.near(of(boundary, v), head[1]);
+            let size = bits.near(of(split, v), row.size);
+            (odd, boundary, split) = ((v, there), (on_boundary.into(), v), (size.into(), v));
+            there += v;
+            rows.push(Row { head: vec![vertices, on_boundary], size });
+        }
+    }
     rows
 }
 
+pub fn read_table(payload: &[u8]) -> Vec<Row> {
+    let bits = payload.iter().flat_map(|byte| (0..8).rev().map(move |i| byte >> i & 1 == 1)).collect();
+    let mut bits = Bits { bits, next: 0, is_reading: true };
+    let rows = table(&mut bits, &[]);
+    assert_eq!(bits.next.div_ceil(8), payload.len());
+    rows
+}
+
+/// A table that says how many passes there are and nothing else.
+pub fn write_count(passes: u64) -> Vec<u8> {
+    let mut bits = Bits { bits: Vec::new(), next: 0, is_reading: false };
+    bits.number(4, passes);
+    bits.into_bytes()
+}
+
 pub fn write_table(rows: &[Row]) -> Vec<u8> {
-    let mut payload = varint(rows.len() as u32 - 1);
-    for row in rows {
-        row.head.iter().chain([&row.size]).for_each(|&number| payload.extend(varint(number)));
-    }
-    payload
+    let mut bits = Bits { bits: Vec::new(), next: 0, is_reading: false };
+    table(&mut bits, rows);
+    bits.into_bytes()
 }
 
 /// The stream with the table's sizes made those of the passes that are there.
