@@ -7,7 +7,7 @@ use crate::descent::{Descent, Settings};
 use crate::descriptors;
 use crate::mesh::Surface;
 use crate::partition::Geometry;
-use crate::simplify::LevelRecord;
+use crate::simplify::{LevelRecord, Seams};
 
 /// Share of an encoder's time that goes into the analysis.
 pub(super) const ANALYSIS_SHARE: f64 = 0.6;
@@ -27,19 +27,23 @@ pub(super) struct Hierarchy {
     pub(super) errors: Vec<f64>,
     pub(super) num_vertices: usize,
     pub(super) num_faces: usize,
+    /// What is left of the full surface, and the rows of attributes there.
+    pub(super) slots: Surface,
+    pub(super) seams: Seams,
 }
 
 pub(super) fn analyse(
     mesh: &TriMesh,
     surface: Surface,
     model: &Model,
+    seams: Seams,
     options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Hierarchy {
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
     let mean_edge = descriptors::mean_edge_length(mesh) * model.unit;
     let geometry = Geometry { grid: &model.cells, positions: &model.positions };
-    let mut descent = Descent::new(surface, geometry, mean_edge, settings(options));
+    let mut descent = Descent::new(surface, geometry, mean_edge, settings(options)).with_seams(seams);
     let squared_step = model.steps_per_unit().powi(2);
     let mut records = Vec::new();
     let mut mean_edges = vec![descent.level().mean_edge(&model.cells)];
@@ -52,7 +56,7 @@ pub(super) fn analyse(
         let fraction = 1.0 - descent.level().vertices.len() as f64 / num_vertices as f64;
         progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });
     }
-    let level = descent.into_base();
+    let (level, slots, seams) = descent.into_base();
     mean_edges.reverse();
     errors.reverse();
     let base = Surface::from_triangles(level.triangles, level.vertices.len());
@@ -66,6 +70,8 @@ pub(super) fn analyse(
         errors,
         num_vertices,
         num_faces,
+        slots,
+        seams,
     }
 }
 

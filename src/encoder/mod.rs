@@ -1,6 +1,8 @@
 //! From a mesh to a stream: down the levels first, then coarse to fine into the bytes.
 
 mod analysis;
+mod attribute_writer;
+mod attributes;
 mod options;
 pub(crate) mod quantise;
 mod schedule;
@@ -8,6 +10,7 @@ mod write;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
+use crate::mesh::Attributes;
 use crate::mesh::repair::{Repaired, repair};
 use crate::{EncodeError, Optimize, StreamInfo, TriMesh};
 
@@ -32,6 +35,20 @@ pub fn encode_with_progress(
     options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Encoded, EncodeError> {
+    encode_with_attributes(mesh, &Attributes::default(), options, progress)
+}
+
+/// Encodes a mesh with its attributes, each quantised to the bits that [`EncodeOptions`] has for its kind; see
+/// [`encode`]. Vertices that are repeated to cut the mesh have the values of the one they repeat.
+///
+/// # Errors
+/// As [`encode`], and if an attribute does not fit the mesh, or there are more than the format can hold.
+pub fn encode_with_attributes(
+    mesh: &TriMesh,
+    attributes: &Attributes,
+    options: &EncodeOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Encoded, EncodeError> {
     options.check()?;
     let Repaired { surface, source, report: repair } = repair(mesh);
     if surface.triangles.is_empty() {
@@ -41,12 +58,14 @@ pub fn encode_with_progress(
         return Err(EncodeError::TooLarge(surface.triangles.len()));
     }
     let model = quantise::quantise(mesh, &source, options.quantization)?;
+    let quantised = attributes::quantise(mesh, attributes, &source, options)?;
     drop(source);
-    let hierarchy = analysis::analyse(mesh, surface, &model, options, progress);
+    let seams = quantised.seams();
+    let hierarchy = analysis::analyse(mesh, surface, &model, seams, options, progress);
     drop(model.positions);
     let write = |steps_per_edge| {
         let schedule = schedule::plan(&hierarchy, options.quantization, steps_per_edge);
-        write::write(&hierarchy, &model.cells, &model.grid, &schedule, options, progress)
+        write::write(&hierarchy, &model.cells, &model.grid, &quantised, &schedule, options, progress)
     };
     let mut bytes = write(options.steps_per_edge);
     if options.optimize == Optimize::Size && options.steps_per_edge.is_none() {
@@ -58,5 +77,5 @@ pub fn encode_with_progress(
     }
     // The encoder's own bytes always hold a header.
     let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(bytes.len()))?;
-    Ok(Encoded { bytes, info, repair })
+    Ok(Encoded { bytes, info, repair, values_dropped: quantised.values_dropped })
 }
