@@ -6,7 +6,7 @@ use crate::mesh::Surface;
 use crate::partition::{Geometry, Optimize, Partition, remove_level};
 use crate::simplify::canonical::Anchors;
 use crate::simplify::memory::ErrorMemory;
-use crate::simplify::{LevelRecord, ShrinkingSurface};
+use crate::simplify::{LevelRecord, Seams, ShrinkingSurface};
 
 /// Most levels, whatever the wish.
 pub(crate) const MAX_LEVELS: u32 = 128;
@@ -41,6 +41,7 @@ pub(crate) struct Descent<'a> {
     shrinking: ShrinkingSurface,
     memory: ErrorMemory<'a>,
     anchors: Anchors,
+    seams: Seams,
     level: Level,
     depth: u32,
     is_over: bool,
@@ -52,13 +53,30 @@ impl<'a> Descent<'a> {
         let anchors = Anchors::new(&surface);
         let shrinking = ShrinkingSurface::new(surface);
         let level = Level::collect(&shrinking);
-        let (features, depth, is_over) = (None, 0, false);
-        Self { settings, geometry, features, mean_edge, shrinking, memory, anchors, level, depth, is_over }
+        let (features, depth, is_over, seams) = (None, 0, false, Seams::default());
+        Self {
+            settings,
+            geometry,
+            features,
+            mean_edge,
+            shrinking,
+            memory,
+            anchors,
+            seams,
+            level,
+            depth,
+            is_over,
+        }
     }
 
     /// The same with attributes that the descriptor sees, which must be one that can.
     pub(crate) fn with_features(self, features: Option<Features>) -> Self {
         Self { features, ..self }
+    }
+
+    /// Follows these seams, which know the attributes of the surface's corners and faces.
+    pub(crate) fn with_seams(self, seams: Seams) -> Self {
+        Self { seams, ..self }
     }
 
     /// What has not been removed yet.
@@ -71,9 +89,10 @@ impl<'a> Descent<'a> {
     }
 
     /// What stays, the triangles at the anchors first, the anchor as their first edge, so that a decoder
-    /// numbers its ends before all other vertices of its component.
-    pub(crate) fn into_base(self) -> Level {
-        let Self { shrinking, anchors, mut level, .. } = self;
+    /// numbers its ends before all other vertices of its component. With the surface in whose slots it stands, and
+    /// the seams there.
+    pub(crate) fn into_base(self) -> (Level, Surface, Seams) {
+        let Self { shrinking, anchors, seams, mut level, .. } = self;
         let mut place_of_slot: Vec<u32> = vec![u32::MAX; shrinking.surface.triangles.len()];
         level.faces.iter().zip(0..).for_each(|(&slot, i)| place_of_slot[slot as usize] = i);
         for (i, corner) in anchors.corners(&shrinking.surface).enumerate() {
@@ -86,7 +105,7 @@ impl<'a> Descent<'a> {
             place_of_slot[level.faces[place] as usize] = place as u32;
             place_of_slot[slot as usize] = i as u32;
         }
-        level
+        (level, shrinking.surface, seams)
     }
 
     /// Mean squared distance of the original surface from the present level, by its quadrics.
@@ -134,6 +153,7 @@ impl Iterator for Descent<'_> {
             self.geometry,
             &mut self.memory,
             &self.anchors,
+            &mut self.seams,
             &self.level.vertices,
             &scores,
         );

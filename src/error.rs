@@ -69,6 +69,14 @@ pub enum EncodeError {
     /// The mesh is too large for the format.
     #[error("the mesh has {0} vertices or faces, more than the format can hold")]
     TooLarge(usize),
+    /// An attribute does not fit the mesh or the format.
+    #[error("attribute {name}: {what}")]
+    Attribute {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        what: String,
+    },
     /// The coordinates span more than double precision can hold.
     #[error("the bounding box of the mesh overflows double precision")]
     BoundingBox,

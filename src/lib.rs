@@ -37,9 +37,11 @@ mod scene;
 #[cfg(feature = "encoder")]
 mod simplify;
 
-pub use decoder::{DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Step, StreamInfo, Update, decode};
+pub use decoder::{
+    AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Step, StreamInfo, Update, decode,
+};
 #[cfg(feature = "encoder")]
-pub use encoder::{EncodeOptions, Encoded, Progress, encode, encode_with_progress};
+pub use encoder::{EncodeOptions, Encoded, Progress, encode, encode_with_attributes, encode_with_progress};
 pub use error::DecodeError;
 #[cfg(feature = "encoder")]
 pub use error::EncodeError;

@@ -5,7 +5,8 @@ use crate::simplify::canonical::{Anchors, patch_order};
 use crate::simplify::collapse::CollapseTest;
 use crate::simplify::hole::HoleFiller;
 use crate::simplify::memory::ErrorMemory;
-use crate::simplify::{LevelRecord, ShrinkingSurface, Star};
+use crate::simplify::seams::{Demand, may_go};
+use crate::simplify::{LevelRecord, Seams, ShrinkingSurface, Star};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 use std::cmp::Reverse;
@@ -139,6 +140,7 @@ pub(crate) fn remove_level(
     geometry: Geometry,
     memory: &mut ErrorMemory,
     anchors: &Anchors,
+    seams: &mut Seams,
     vertices: &[u32],
     scores: &[f64],
 ) -> LevelRecord {
@@ -147,13 +149,14 @@ pub(crate) fn remove_level(
     match partition {
         Partition::Algorithm1 => {
             let order = by_score(vertices, scores);
-            remove_in_order(surface, geometry, &order, Some(memory))
+            remove_in_order(surface, geometry, &order, Some(memory), seams)
         }
         Partition::Balanced => {
             let mut free = candidates(surface, memory, vertices, scores, thinning);
             free.retain(|&v| !anchors.contain(v));
+            leave_seams(surface, seams, vertices.len(), &mut free);
             let chosen = closely_packed(surface, &free);
-            remove_as_decoded(surface, geometry, &chosen, thinning.tolerance, memory, anchors)
+            remove_as_decoded(surface, geometry, &chosen, thinning.tolerance, memory, anchors, seams)
         }
     }
 }
@@ -165,6 +168,7 @@ pub(crate) fn remove_in_order(
     geometry: Geometry,
     order: &[u32],
     mut memory: Option<&mut ErrorMemory>,
+    seams: &mut Seams,
 ) -> LevelRecord {
     let mut tagged: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     let mut record = LevelRecord::default();
@@ -183,6 +187,7 @@ pub(crate) fn remove_in_order(
         }
         let faces = surface.remove(&star, ears);
         record.push(vertex, &star.ring, faces);
+        seams.remove(&star, ears, &mut record);
         star.ring.iter().for_each(|&v| tagged.set(v as usize, true));
     }
     record.shrink_to_fit();
@@ -199,6 +204,7 @@ fn remove_as_decoded(
     tolerance: f64,
     memory: &mut ErrorMemory,
     anchors: &Anchors,
+    seams: &mut Seams,
 ) -> LevelRecord {
     let mut odd: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     chosen.iter().for_each(|&v| odd.set(v as usize, true));
@@ -210,11 +216,21 @@ fn remove_as_decoded(
     let mut filler = HoleFiller::default();
     for corner in patches.into_iter().chain(ears) {
         surface.read_star_from(corner, &mut star);
-        let filled = filler.fill(surface, &star, geometry.grid, geometry.positions, tolerance);
+        let diagonal = match seams.demand(&star) {
+            Demand::Diagonal(diagonal) => Some(diagonal),
+            Demand::Stay if seams.hold() => continue,
+            _ => None,
+        };
+        let Geometry { grid, positions } = geometry;
+        let mut fill = |diagonal| filler.fill(surface, &star, grid, positions, tolerance, diagonal).is_some();
+        let is_wish = diagonal.is_some() && !seams.hold();
+        let diagonal = diagonal.filter(|&d| !is_wish || fill(Some(d)));
+        let filled = filler.fill(surface, &star, grid, positions, tolerance, diagonal);
         let Some(ears) = filled else { continue };
         memory.hand_on(&star);
         let faces = surface.remove(&star, ears);
         record.push(star.vertex, &star.ring, faces);
+        seams.remove(&star, ears, &mut record);
     }
     record.shrink_to_fit();
     record
@@ -254,6 +270,26 @@ fn candidates(
     let valence = |v: u32| surface.surface.valence[v as usize];
     free.retain(|&v| valence(v) <= thinning.max_valence);
     free
+}
+
+/// Keeps the vertices where seams end or meet, as long as there are others, or the level is coarse: where seams are
+/// everywhere they are no reason to stay.
+fn leave_seams(surface: &ShrinkingSurface, seams: &mut Seams, num_vertices: usize, free: &mut Vec<u32>) {
+    /// Share of the vertices that could go otherwise.
+    const LEAST_FREE: f64 = 0.125;
+    /// Share of the vertices of the finest level.
+    const COARSE: f64 = 1.0 / 32.0;
+    if !seams.hold() {
+        return;
+    }
+    let mut star = Star::default();
+    let kept: Vec<u32> = free.iter().copied().filter(|&v| may_go(seams, surface, v, &mut star)).collect();
+    let is_coarse = num_vertices as f64 <= COARSE * surface.surface.corner_of.len() as f64;
+    if is_coarse || kept.len() as f64 >= LEAST_FREE * free.len() as f64 {
+        *free = kept;
+    } else {
+        seams.break_up();
+    }
 }
 
 /// Those of `free` that go one after the other if each rules out its neighbours, the ones first whose

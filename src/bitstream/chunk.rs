@@ -105,11 +105,11 @@ pub(crate) fn payload_start(kind: u8, length: usize) -> usize {
     if kind::is_pass(kind) { 1 } else { 1 + varint_size(length as u32) }
 }
 
-/// Payload so far of the incomplete chunk that `bytes` begin with, if it is the next pass.
-pub(crate) fn parse_cut(bytes: &[u8], next_pass: NextPass) -> Option<&[u8]> {
+/// Kind and payload so far of the incomplete chunk that `bytes` begin with; of passes only of the next one.
+pub(crate) fn parse_cut(bytes: &[u8], next_pass: NextPass) -> Option<(u8, &[u8])> {
     let (kind, start, length) = parse_head(bytes, next_pass).ok()?;
-    let payload = &bytes[start..];
-    kind::is_pass(kind).then_some(&payload[..payload.len().min(length)])
+    let payload = bytes.get(start..)?;
+    Some((kind, &payload[..payload.len().min(length)]))
 }
 
 /// Bytes of a pass with a payload of `length` bytes.
@@ -158,8 +158,9 @@ mod tests {
             }
             for cut in 0..bytes.len() {
                 assert!(matches!(parse(&bytes[..cut], next), Frame::Incomplete { needed } if needed > cut));
-                let so_far = &payload[..cut.saturating_sub(1).min(length)];
-                assert_eq!(parse_cut(&bytes[..cut], next), (is_pass && cut > 0).then_some(so_far));
+                let head = payload_start(kind, length);
+                let so_far = (kind, &payload[..cut.saturating_sub(head).min(length)]);
+                assert_eq!(parse_cut(&bytes[..cut], next), (cut >= head).then_some(so_far));
             }
             bytes.push(99);
             let Frame::Chunk { kind: found, payload: read, size, intact } = parse(&bytes, next) else {

@@ -104,6 +104,7 @@ impl BitCoder for RangeEncoder {
 }
 
 /// Where a decoder stands in its payload.
+#[derive(Clone)]
 pub(crate) struct RangeState {
     code: u32,
     range: u32,
@@ -140,6 +141,11 @@ impl<'a> RangeDecoder<'a> {
     pub(crate) fn resume(bytes: &'a [u8], state: &RangeState) -> Self {
         let RangeState { code, range, next } = *state;
         Self { code, range, bytes, next, end: bytes.len() + MAX_MISSING_ZEROS, is_cut: false }
+    }
+
+    /// Bytes read, or asked for behind the end.
+    pub(crate) fn position(&self) -> usize {
+        self.next
     }
 
     pub(crate) fn pause(&self) -> RangeState {

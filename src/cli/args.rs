@@ -98,6 +98,25 @@ pub struct Encode {
     #[arg(long, value_name = "STEPS")]
     #[arg(allow_negative_numbers = true, value_parser = quantity::number(0.5, 1e9))]
     pub steps_per_edge: Option<f64>,
+    /// Bits of each of the two coordinates of a normal on the octahedron, 2 to 30.
+    #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().normal_bits)]
+    #[arg(value_parser = value_parser!(u32).range(2..=30), allow_negative_numbers = true)]
+    pub normal_bits: u32,
+    /// Bits of each texture coordinate, 1 to 30.
+    #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().uv_bits)]
+    #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
+    pub uv_bits: u32,
+    /// Bits of each component of a colour, 1 to 30. Those of 8 bits are kept exactly with 8.
+    #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().color_bits)]
+    #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
+    pub color_bits: u32,
+    /// Bits of each component of all other attributes, 1 to 30. Integers that fit are kept exactly.
+    #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().generic_bits)]
+    #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
+    pub generic_bits: u32,
+    /// Keep positions and triangles only.
+    #[arg(long)]
+    pub no_attributes: bool,
     /// Join the meshes of a scene (.glb .gltf) into one. They are joined without it too, with a note: streams
     /// of several meshes are not there yet.
     #[arg(long)]

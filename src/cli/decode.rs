@@ -7,7 +7,8 @@ use super::output::{Destination, with_ending};
 use super::quantity::counted;
 use super::ui::Ui;
 use anyhow::Context;
-use lwc::io::{Format, WriteError};
+use lwc::io::{Format, WriteError, WriteReport};
+use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -25,7 +26,13 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let DecodedStream { decoder, error } = source.decode(args.bytes, options, ui)?;
     let mesh = sound_mesh(&decoder, error, args, &source.name(), ui).with_context(|| source.name())?;
     note_what_is_missing(&decoder, args, &source.name(), ui);
-    write(&destination, format, &mesh)?;
+    let (mesh, attributes) = mesh;
+    let report = write(&destination, format, &mesh, &attributes)?;
+    for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {
+        if !names.is_empty() {
+            ui.warn(&destination.name(), &format!("{what}: {}", names.join(", ")));
+        }
+    }
 
     if !ui.is_quiet() && destination != Destination::Stdout {
         let name = destination.name();
@@ -72,16 +79,16 @@ fn sound_mesh(
     args: &Decode,
     name: &str,
     ui: &Ui,
-) -> Result<TriMesh, DecodeError> {
+) -> Result<(TriMesh, Attributes), DecodeError> {
     match (error, decoder.mesh()) {
         (Some(error), Some(mesh)) if args.salvage => {
             ui.warn(name, &format!("{error}; salvaged {}", reached(decoder).unwrap_or_default()));
-            Ok(mesh.to_tri_mesh())
+            Ok((mesh.to_tri_mesh(), decoder.attributes()))
         }
         (Some(error), _) => Err(error),
         (None, _) => {
             note_if_incomplete(decoder, args.bytes, name, ui);
-            decoder.preview().ok_or(DecodeError::NoMesh)
+            decoder.preview_with_attributes().ok_or(DecodeError::NoMesh)
         }
     }
 }
@@ -93,11 +100,24 @@ fn note_what_is_missing(decoder: &Decoder, args: &Decode, name: &str, ui: &Ui) {
     }
 }
 
-fn write(destination: &Destination, format: Format, mesh: &TriMesh) -> anyhow::Result<()> {
+fn write(
+    destination: &Destination,
+    format: Format,
+    mesh: &TriMesh,
+    attributes: &Attributes,
+) -> anyhow::Result<WriteReport> {
+    let mut report = WriteReport::default();
     match destination {
-        Destination::File(path) => lwc::io::write(path, mesh).with_context(|| destination.name()),
-        Destination::Stdout => destination.write(|out| lwc::io::write_to(out, mesh, format)),
+        Destination::File(path) => {
+            let written = lwc::io::write_with_attributes(path, mesh, attributes);
+            report = written.with_context(|| destination.name())?;
+        }
+        Destination::Stdout => destination.write(|out| {
+            report = lwc::io::write_with_attributes_to(out, mesh, attributes, format)?;
+            Ok::<(), WriteError>(())
+        })?,
     }
+    Ok(report)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! `lwc encode`: a mesh file becomes a stream.
 
 use super::args::Encode;
-use super::input::{not_kept, read_mesh, read_terrain};
+use super::input::{read_mesh, read_terrain};
 use super::output::{Destination, print_json, with_ending, without_mesh_ending};
 use super::quantity::counted;
 use super::ui::Ui;
@@ -25,6 +25,10 @@ impl Encode {
         options.partition = self.partition;
         options.optimize = self.optimize;
         options.steps_per_edge = self.steps_per_edge;
+        options.normal_bits = self.normal_bits;
+        options.uv_bits = self.uv_bits;
+        options.color_bits = self.color_bits;
+        options.generic_bits = self.generic_bits;
         options
     }
 
@@ -39,10 +43,11 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let destination = args.destination();
     destination.check(Some(&args.input), false)?;
     let start = Instant::now();
-    let file = match args.terrain.options() {
+    let mut file = match args.terrain.options() {
         Some(options) => read_terrain(&args.input, &options, ui)?,
         None => read_mesh(&args.input, ui)?,
     };
+    let left_out = if args.no_attributes { drop_attributes(&mut file) } else { Vec::new() };
     if !args.merge {
         note_if_merged(&args.input.display().to_string(), &file, ui);
     }
@@ -52,7 +57,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let start = Instant::now();
     let encoded = encode(&file, args, ui).with_context(|| name.clone())?;
     let encode_seconds = start.elapsed().as_secs_f64();
-    warn_about(&name, &encoded.repair, ui);
+    warn_about(&name, &encoded, ui);
 
     if args.verify {
         let start = Instant::now();
@@ -61,14 +66,22 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
     }
     destination.write(|out| out.write_all(&encoded.bytes))?;
-    let report = Report { args, file: &file, encoded: &encoded, destination, read_seconds, encode_seconds };
+    let (file, encoded) = (&file, &encoded);
+    let report = Report { args, file, left_out, encoded, destination, read_seconds, encode_seconds };
     report.print(ui)
 }
 
 fn encode(file: &MeshFile, args: &Encode, ui: &Ui) -> Result<Encoded, lwc::EncodeError> {
     let bar = ui.bar("encoding");
     let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
-    lwc::encode_with_progress(&file.mesh, &args.options(), &progress)
+    lwc::encode_with_attributes(&file.mesh, &file.attributes, &args.options(), &progress)
+}
+
+/// Takes the attributes out of a file; returns their names.
+fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
+    let attributes = std::mem::take(&mut file.attributes);
+    let names = attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
+    names.chain(attributes.material_libraries.first().map(|_| "mtllib".to_owned())).collect()
 }
 
 fn note_if_merged(name: &str, file: &MeshFile, ui: &Ui) {
@@ -79,8 +92,12 @@ fn note_if_merged(name: &str, file: &MeshFile, ui: &Ui) {
     }
 }
 
-fn warn_about(name: &str, repair: &RepairReport, ui: &Ui) {
-    let RepairReport { degenerate_faces, isolated_vertices, repeated_vertices } = *repair;
+fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
+    let RepairReport { degenerate_faces, isolated_vertices, repeated_vertices } = encoded.repair;
+    if encoded.values_dropped > 0 {
+        let values = counted(encoded.values_dropped, "value", "values");
+        ui.warn(name, &format!("{values} of attributes left out: not finite"));
+    }
     if degenerate_faces > 0 {
         let faces = counted(degenerate_faces, "degenerate face", "degenerate faces");
         ui.warn(name, &format!("{faces} dropped"));
@@ -99,6 +116,8 @@ fn warn_about(name: &str, repair: &RepairReport, ui: &Ui) {
 struct Report<'a> {
     args: &'a Encode,
     file: &'a MeshFile,
+    /// Attributes that were not wanted.
+    left_out: Vec<String>,
     encoded: &'a Encoded,
     destination: Destination,
     read_seconds: f64,
@@ -193,7 +212,8 @@ impl Report<'_> {
             "faces_skipped": read.faces_skipped,
             "corners_welded": read.corners_welded,
             "points_left_out": read.points_left_out,
-            "ignored": not_kept(self.file),
+            "ignored": self.file.report.ignored.iter().chain(&self.left_out).collect::<Vec<_>>(),
+            "attributes": passes::attributes_to_json(info),
             "degenerate_faces": repair.degenerate_faces,
             "isolated_vertices": repair.isolated_vertices,
             "repeated_vertices": repair.repeated_vertices,

@@ -38,14 +38,6 @@ fn read_with(
     Ok(file)
 }
 
-/// Names of what is in a file and in no stream: what its reader left out, and all attributes.
-pub fn not_kept(file: &MeshFile) -> Vec<String> {
-    let attributes = file.attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
-    let libraries = file.attributes.material_libraries.first().map(|_| "mtllib".to_owned());
-    let materials = file.attributes.gltf_materials.as_ref().map(|_| "materials but their names".to_owned());
-    file.report.ignored.iter().cloned().chain(attributes).chain(libraries).chain(materials).collect()
-}
-
 fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
     let report = &file.report;
     if report.polygons_triangulated > 0 {
@@ -60,9 +52,8 @@ fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
         let points = counted(report.points_left_out, "point", "points");
         ui.warn(name, &format!("{points} left out: above others, or not wanted"));
     }
-    let not_kept = not_kept(file);
-    if !not_kept.is_empty() {
-        ui.warn(name, &format!("not kept: {}", not_kept.join(", ")));
+    if !report.ignored.is_empty() {
+        ui.warn(name, &format!("not kept: {}", report.ignored.join(", ")));
     }
     if report.corners_welded > 0 {
         ui.detail(name, &format!("{} joined", counted(report.corners_welded, "corner", "corners")));

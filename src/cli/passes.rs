@@ -29,12 +29,28 @@ pub fn to_json(info: &StreamInfo, present: u64) -> Value {
             "faces": pass.faces,
             "odd_share": odd_share(info, i),
             "bytes": pass.bytes,
+            "attribute_bytes": pass.attribute_bytes,
             "bits_per_vertex": bits_per_vertex(pass.bytes, info),
             "end": pass.end,
             "present": pass.end <= present,
         })
     };
     info.passes().iter().enumerate().map(row).collect()
+}
+
+/// One object per attribute.
+pub fn attributes_to_json(info: &StreamInfo) -> Value {
+    let row = |attribute: &lwc::AttributeInfo| {
+        json!({
+            "name": attribute.name,
+            "semantic": format!("{:?}", attribute.semantic),
+            "domain": attribute.domain.to_string(),
+            "components": attribute.num_components,
+            "type": attribute.scalar.map(|scalar| format!("{scalar:?}")),
+            "bits": attribute.bits,
+        })
+    };
+    info.attributes().iter().map(row).collect()
 }
 
 /// One line per pass.

@@ -5,6 +5,8 @@ use crate::bitstream::chunk::{self, Frame, NextPass};
 use crate::bitstream::header::{Action, Grid, Pass, Provenance};
 use crate::bitstream::pass_table::{self, BadTable};
 use crate::limits::Limits;
+use crate::mesh::{Domain, ScalarType, Semantic};
+use crate::passes::attribute::{Coding, Declaration};
 
 /// What a stream says of itself before its first pass.
 #[derive(Clone, Debug)]
@@ -12,6 +14,41 @@ pub struct StreamInfo {
     pub(super) grid: Grid,
     pub(super) provenance: Option<Provenance>,
     pub(super) passes: Vec<PassInfo>,
+    pub(super) attributes: Vec<AttributeInfo>,
+}
+
+/// What a stream says of one of its attributes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct AttributeInfo {
+    /// What the file called it.
+    pub name: String,
+    /// What the values mean.
+    pub semantic: Semantic,
+    /// What has a value.
+    pub domain: Domain,
+    /// Values of a row.
+    pub num_components: usize,
+    /// Type of the values, `None` for names.
+    pub scalar: Option<ScalarType>,
+    /// Bits of each of the integers that are coded for a row.
+    pub bits: u32,
+}
+
+impl AttributeInfo {
+    pub(super) fn of(declaration: &Declaration) -> Self {
+        Self {
+            name: declaration.name.clone(),
+            semantic: declaration.semantic,
+            domain: declaration.domain,
+            num_components: declaration.num_components,
+            scalar: declaration.scalar,
+            bits: match declaration.coding {
+                Coding::Uniform { bits, .. } | Coding::Octahedral { bits } => bits,
+                Coding::Table { .. } => usize::BITS - (declaration.table_len() - 1).leading_zeros(),
+            },
+        }
+    }
 }
 
 /// Kind of a pass.
@@ -109,6 +146,11 @@ impl StreamInfo {
         self.passes.last().map_or(0, |p| p.end)
     }
 
+    /// The attributes, in the order of [`Decoder::attributes`](crate::Decoder::attributes).
+    pub fn attributes(&self) -> &[AttributeInfo] {
+        &self.attributes
+    }
+
     /// Number of the descriptor that chose the odd vertices (`format/SPEC.md`, section 4.2).
     pub fn descriptor_code(&self) -> Option<u8> {
         self.provenance.map(|p| p.descriptor)
@@ -203,8 +245,8 @@ impl FrameReader {
         }
     }
 
-    /// Payload so far of the next pass, if its chunk has begun but is not complete.
-    pub(super) fn cut_pass(&self, next_pass: NextPass) -> Option<&[u8]> {
+    /// Kind and payload so far of the chunk that is not complete yet; of passes only of the next one.
+    pub(super) fn cut_chunk(&self, next_pass: NextPass) -> Option<(u8, &[u8])> {
         chunk::parse_cut(&self.buffer[self.read..], next_pass)
     }
 

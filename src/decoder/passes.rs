@@ -55,7 +55,7 @@ impl PassDecoder {
         }
     }
 
-    /// Goes on with a pass; what it changed once it is over, `None` if the work is used up before.
+    /// Goes on with a pass; what it changed, and its patches, once it is over, `None` if the work is used up before.
     /// After an error the mesh is the one from before the pass.
     ///
     /// # Errors
@@ -66,13 +66,13 @@ impl PassDecoder {
         pass: &PassInfo,
         payload: &[u8],
         work: &mut Work,
-    ) -> Result<Option<Changes>, Malformed> {
+    ) -> Result<Option<(Changes, Patches)>, Malformed> {
         let mut coder = running.coder(payload);
         let result = running.advance(self, pass, &mut coder, work).and_then(|patches| {
             let Some(patches) = patches else { return Ok(None) };
             check_end(&coder)?;
             work.sweep(pass.faces as usize);
-            Ok(Some(Changes::of(pass, &patches)))
+            Ok(Some((Changes::of(pass, &patches), patches)))
         });
         running.pause(&coder);
         if result.is_err() {
@@ -96,7 +96,7 @@ impl PassDecoder {
 
     /// The mesh with the beginning of a pass: a split brings back the vertices whose coordinates are
     /// there, a refinement guesses the bits that are missing. `None` if the bytes tell nothing.
-    pub(super) fn mesh_with_cut(&self, pass: &PassInfo, payload: &[u8]) -> Option<GridMesh> {
+    pub(super) fn mesh_with_cut(&self, pass: &PassInfo, payload: &[u8]) -> Option<(GridMesh, Patches)> {
         if pass.kind == PassKind::Base {
             return None;
         }
@@ -105,7 +105,7 @@ impl PassDecoder {
         let mut running = Running::new(payload);
         let patches = running.advance(&mut ahead, pass, &mut coder, &mut Work::unlimited()).ok()??;
         if pass.kind == PassKind::Refine {
-            return Some(ahead.mesh);
+            return Some((ahead.mesh, patches));
         }
         // All of the connectivity is needed to read the coordinates, not to show them.
         let (first, count) = (self.mesh.positions.len(), ahead.mesh.positions.len());
@@ -115,7 +115,7 @@ impl PassDecoder {
             builder.restore(&mut mesh.surface, &patches, patch).ok()?;
         }
         mesh.positions.extend_from_slice(&ahead.mesh.positions[first..]);
-        Some(mesh)
+        Some((mesh, patches))
     }
 }
 
@@ -139,9 +139,9 @@ fn check_end(coder: &RangeDecoder) -> Result<(), Malformed> {
     if coder.is_exhausted() { Err(Malformed(EXHAUSTED)) } else { Ok(()) }
 }
 
-/// Checks a pass against the limits before anything is allocated for it.
-pub(super) fn check_limits(pass: &PassInfo, limits: &Limits, buffered: usize) -> Result<(), DecodeError> {
+/// Checks a pass against the limits before anything is allocated for it. `held`: bytes that are taken besides.
+pub(super) fn check_limits(pass: &PassInfo, limits: &Limits, held: u64) -> Result<(), DecodeError> {
     Limits::check("vertices", u64::from(pass.vertices), u64::from(limits.max_vertices))?;
     Limits::check("levels", u64::from(pass.level), u64::from(limits.max_levels))?;
-    Limits::check("memory", memory_for(pass) + buffered as u64, limits.max_memory)
+    Limits::check("memory", memory_for(pass) + held, limits.max_memory)
 }

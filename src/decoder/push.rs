@@ -1,13 +1,17 @@
 //! The push decoder: bytes in, refined meshes out.
 
-use super::frame::{self, Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
+use super::attributes::{self, AttributeDecoder};
+use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
 use super::level_mesh::LevelMesh;
 use super::passes::{self, PassDecoder};
 use super::running::Running;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::{Header, Provenance};
 use crate::limits::Limits;
+use crate::mesh::Attributes;
 use crate::passes::GridMesh;
+use crate::passes::attribute::Declarations;
+use crate::passes::patch::Patches;
 use crate::passes::work::Work;
 use crate::{DecodeError, TriMesh};
 use std::collections::VecDeque;
@@ -70,6 +74,9 @@ pub struct Decoder {
     /// Kinds of the chunks that must come before the next pass, or behind the last: what belongs to the
     /// passes that are done.
     awaited: VecDeque<u8>,
+    attributes: Option<AttributeDecoder>,
+    /// A chunk of attributes that is half done.
+    running_attributes: Option<Chunk>,
     work_done: u64,
     failed: bool,
 }
@@ -93,6 +100,8 @@ impl Decoder {
             passes: PassDecoder::new(),
             running: None,
             awaited: VecDeque::new(),
+            attributes: None,
+            running_attributes: None,
             work_done: 0,
             failed: false,
         }
@@ -127,8 +136,8 @@ impl Decoder {
         }
         let needed = self.frames.buffered() as u64 + bytes.len() as u64;
         Limits::check("memory", needed, self.limits.max_memory).inspect_err(|_| self.failed = true)?;
-        // The payload of a pass that is half done must stay where it is.
-        self.frames.feed(bytes, self.running.is_none());
+        // The payload of a chunk that is half done must stay where it is.
+        self.frames.feed(bytes, self.running.is_none() && self.running_attributes.is_none());
         Ok(())
     }
 
@@ -183,6 +192,11 @@ impl Decoder {
         if let Some((running, chunk)) = self.running.take() {
             return self.advance(running, chunk, work);
         }
+        if let Some(chunk) = self.running_attributes.take()
+            && !self.advance_attributes(chunk, work)?
+        {
+            return Ok(Step::Unfinished);
+        }
         self.read_info()?;
         while self.info.is_some() && !self.is_complete() {
             let next = self.next_pass().map(PassInfo::frame);
@@ -191,7 +205,6 @@ impl Decoder {
             };
             match chunk.kind {
                 kind if self.awaited.front() == Some(&kind) => {
-                    self.awaited.pop_front();
                     if !self.begin_companion(chunk, work)? {
                         return Ok(Step::Unfinished);
                     }
@@ -224,10 +237,25 @@ impl Decoder {
                     self.header = Some(header);
                 }
                 (kind::PASSES, Some(Header { grid, .. })) => {
-                    let passes = frame::list_passes(payload, grid, self.frames.position(), &[]);
+                    let none = Declarations::default();
+                    let declared = self.attributes.as_ref().map_or(&none, |a| &a.declarations);
+                    let passes = frame::list_passes(payload, grid, self.frames.position(), &declared.bytes);
                     let passes = passes.map_err(|e| malformed(e.0))?;
-                    self.info = Some(StreamInfo { grid: *grid, provenance: self.provenance, passes });
+                    if self.attributes.is_some() {
+                        attributes::check_density(declared, &passes).map_err(malformed)?;
+                    }
+                    let attributes = declared.list.iter().map(AttributeInfo::of).collect();
+                    let (grid, provenance) = (*grid, self.provenance);
+                    self.info = Some(StreamInfo { grid, provenance, passes, attributes });
                 }
+                (kind::DECLARATIONS, _) if self.attributes.is_none() => {
+                    let needed = 2 * payload.len() as u64 + self.frames.buffered() as u64;
+                    Limits::check("memory", needed, self.limits.max_memory)?;
+                    let declared =
+                        Declarations::read(payload).ok_or(malformed("declarations of attributes"))?;
+                    self.attributes = Some(AttributeDecoder::new(declared));
+                }
+                (kind::DECLARATIONS, _) => return Err(out_of_order(&chunk)),
                 (kind::PROVENANCE, _) => self.provenance = Provenance::read(payload),
                 (kind::HEADER | kind::PASSES, _) => return Err(out_of_order(&chunk)),
                 _ => skip(&chunk)?,
@@ -240,7 +268,9 @@ impl Decoder {
         let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
         let pass = self.next_pass().ok_or(malformed("a pass that was not announced"))?;
         let payload = self.frames.payload(&chunk);
-        passes::check_limits(pass, &self.limits, self.frames.buffered())?;
+        let attributes = self.attributes.as_ref().map(|a| attributes::memory_for(&a.declarations, pass));
+        let held = self.frames.buffered() as u64 + attributes.unwrap_or(0);
+        passes::check_limits(pass, &self.limits, held)?;
         self.advance(Running::new(payload), chunk, work)
     }
 
@@ -250,12 +280,12 @@ impl Decoder {
         let pass = self.next_pass().copied().ok_or(malformed("a pass that was not announced"))?;
         let payload = self.frames.payload(&chunk);
         let changes = self.passes.advance(&mut running, &pass, payload, work).map_err(|e| malformed(e.0))?;
-        let Some(changes) = changes else {
+        let Some((changes, patches)) = changes else {
             self.running = Some((running, chunk));
             return Ok(Step::Unfinished);
         };
         self.done += 1;
-        self.await_companions();
+        self.await_companions(&pass, patches, changes.first_vertex as usize);
         Ok(Step::Finished(Update {
             pass,
             vertices: changes.first_vertex..pass.vertices,
@@ -266,11 +296,40 @@ impl Decoder {
 
     /// Notes which chunks belong to the pass that has just been done, and, if it was the last one of the stream,
     /// which follow that.
-    fn await_companions(&mut self) {}
+    fn await_companions(&mut self, pass: &PassInfo, patches: Patches, first: usize) {
+        if pass.attribute_bytes > 0
+            && let Some(attributes) = &mut self.attributes
+        {
+            attributes.expect((pass.kind == PassKind::Split).then_some(patches), first);
+            self.awaited.push_back(kind::ATTRIBUTES);
+        }
+    }
 
     /// Takes a chunk that was awaited; false if it is half done.
-    fn begin_companion(&mut self, chunk: Chunk, _work: &mut Work) -> Result<bool, DecodeError> {
-        Err(out_of_order(&chunk))
+    fn begin_companion(&mut self, chunk: Chunk, work: &mut Work) -> Result<bool, DecodeError> {
+        let expected = self
+            .done
+            .checked_sub(1)
+            .and_then(|last| self.attributes.as_ref()?.declarations.bytes.get(last).copied());
+        if expected != Some(self.frames.payload(&chunk).len() as u32) {
+            let what = "values of attributes differ from their declaration";
+            return Err(DecodeError::Malformed { what, offset: chunk.offset });
+        }
+        self.advance_attributes(chunk, work)
+    }
+
+    /// Goes on with the values of the last pass; false if the work is used up before they are all there.
+    fn advance_attributes(&mut self, chunk: Chunk, work: &mut Work) -> Result<bool, DecodeError> {
+        let Some(attributes) = &mut self.attributes else { return Err(out_of_order(&chunk)) };
+        let payload = self.frames.payload(&chunk);
+        let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
+        let is_done = attributes.advance(&self.passes.mesh, payload, work).map_err(|e| malformed(e.0))?;
+        if is_done {
+            self.awaited.pop_front();
+        } else {
+            self.running_attributes = Some(chunk);
+        }
+        Ok(is_done)
     }
 
     /// The pass that is decoded next, unless the stream or the wanted level is complete.
@@ -306,24 +365,56 @@ impl Decoder {
     /// ([`Decoder::step_within`]) it is [`Decoder::mesh`].
     pub fn preview(&self) -> Option<TriMesh> {
         let complete = self.mesh()?;
-        let Some((pass, mesh)) = self.mesh_with_cut() else {
+        let Some((pass, mesh, _)) = self.mesh_with_cut() else {
             return Some(complete.to_tri_mesh());
         };
         let (cells, triangles) = (&mesh.positions[..], &mesh.surface.triangles[..]);
         Some(LevelMesh { cells, triangles, precision: pass.precision, ..complete }.to_tri_mesh())
     }
 
-    fn mesh_with_cut(&self) -> Option<(&PassInfo, GridMesh)> {
+    /// Attributes of [`Decoder::mesh`], without gaps: values that have not come yet are guessed from those around.
+    /// Empty before the base mesh is complete, and of a stream without attributes. Collected anew by each call.
+    pub fn attributes(&self) -> Attributes {
+        let Some(attributes) = self.attributes.as_ref().filter(|_| self.done > 0) else {
+            return Attributes::default();
+        };
+        let cut = self.frames.cut_chunk(None).filter(|(kind, _)| self.awaited.front() == Some(kind));
+        attributes.attributes(&self.passes.mesh, cut.map_or(&[], |(_, payload)| payload))
+    }
+
+    /// Bytes of payload that each attribute has taken so far, to a few bytes per pass.
+    pub fn attribute_bytes(&self) -> &[u64] {
+        self.attributes.as_ref().map_or(&[], AttributeDecoder::bytes)
+    }
+
+    /// [`Decoder::preview`] with its attributes.
+    pub fn preview_with_attributes(&self) -> Option<(TriMesh, Attributes)> {
+        let complete = self.mesh()?;
+        let Some((pass, mesh, patches)) = self.mesh_with_cut() else {
+            return Some((complete.to_tri_mesh(), self.attributes()));
+        };
+        let (cells, triangles) = (&mesh.positions[..], &mesh.surface.triangles[..]);
+        let cut = LevelMesh { cells, triangles, precision: pass.precision, ..complete }.to_tri_mesh();
+        let first = complete.num_vertices();
+        let attributes = match &self.attributes {
+            Some(attributes) if pass.kind == PassKind::Split => attributes.with_cut(&mesh, &patches, first),
+            _ => self.attributes(),
+        };
+        Some((cut, attributes))
+    }
+
+    fn mesh_with_cut(&self) -> Option<(&PassInfo, GridMesh, Patches)> {
         let pass = self.next_pass().filter(|_| self.running.is_none())?;
-        let payload = self.frames.cut_pass(Some(pass.frame()))?;
+        let (kind, payload) = self.frames.cut_chunk(Some(pass.frame()))?;
         // The coder reads four bytes ahead: fewer decide nothing.
-        if self.failed || payload.len() < 5 {
+        if self.failed || !kind::is_pass(kind) || payload.len() < 5 {
             return None;
         }
         // Two copies that take as much again as the mesh itself.
         let buffered = self.frames.buffered() as u64 + 2 * passes::memory_for(pass);
-        passes::check_limits(pass, &self.limits, buffered as usize).ok()?;
-        Some((pass, self.passes.mesh_with_cut(pass, payload)?))
+        passes::check_limits(pass, &self.limits, buffered).ok()?;
+        let (mesh, patches) = self.passes.mesh_with_cut(pass, payload)?;
+        Some((pass, mesh, patches))
     }
 
     /// Units of work done so far, see [`Decoder::step_within`]: the same for a stream however it is

@@ -6,7 +6,7 @@ use crate::descent::{Descent, Settings};
 use crate::descriptors;
 use crate::mesh::Surface;
 use crate::partition::Geometry;
-use crate::simplify::LevelRecord;
+use crate::simplify::{LevelRecord, Seams};
 
 /// Share of an encoder's time that goes into the analysis.
 pub(super) const ANALYSIS_SHARE: f64 = 0.6;
@@ -26,6 +26,9 @@ pub(super) struct Hierarchy {
     pub(super) errors: Vec<f64>,
     pub(super) num_vertices: usize,
     pub(super) num_faces: usize,
+    /// What is left of the full surface, and the rows of attributes there.
+    pub(super) slots: Surface,
+    pub(super) seams: Seams,
 }
 
 /// Goes down from `surface`, whose vertices have the places `cells`. Nothing else is looked at, so that a
@@ -33,6 +36,7 @@ pub(super) struct Hierarchy {
 pub(super) fn analyse(
     surface: Surface,
     cells: &[[i32; 3]],
+    seams: Seams,
     options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Hierarchy {
@@ -44,7 +48,7 @@ pub(super) fn analyse(
     let mean_edge = descriptors::mean_edge_length(&mesh);
     let (positions, _) = mesh.into_parts();
     let geometry = Geometry { grid: cells, positions: &positions };
-    let mut descent = Descent::new(surface, geometry, mean_edge, settings(options));
+    let mut descent = Descent::new(surface, geometry, mean_edge, settings(options)).with_seams(seams);
     let squared_step = steps_per_unit.powi(2);
     let mut records = Vec::new();
     let mut mean_edges = vec![descent.level().mean_edge(cells)];
@@ -57,7 +61,7 @@ pub(super) fn analyse(
         let fraction = 1.0 - descent.level().vertices.len() as f64 / num_vertices as f64;
         progress(Progress { stage: "levels", fraction: fraction * ANALYSIS_SHARE });
     }
-    let level = descent.into_base();
+    let (level, slots, seams) = descent.into_base();
     mean_edges.reverse();
     errors.reverse();
     let base = Surface::from_triangles(level.triangles, level.vertices.len());
@@ -71,6 +75,8 @@ pub(super) fn analyse(
         errors,
         num_vertices,
         num_faces,
+        slots,
+        seams,
     }
 }
 

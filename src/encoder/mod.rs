@@ -1,6 +1,8 @@
 //! From a mesh to a stream: down the levels first, then coarse to fine into the bytes.
 
 mod analysis;
+mod attribute_writer;
+mod attributes;
 mod options;
 mod order;
 pub(crate) mod quantise;
@@ -9,6 +11,7 @@ mod write;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
+use crate::mesh::Attributes;
 use crate::mesh::repair::{RepairReport, cut};
 use crate::{EncodeError, Optimize, StreamInfo, TriMesh};
 
@@ -30,6 +33,20 @@ pub fn encode(mesh: &TriMesh, options: &EncodeOptions) -> Result<Encoded, Encode
 /// As [`encode`].
 pub fn encode_with_progress(
     mesh: &TriMesh,
+    options: &EncodeOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Encoded, EncodeError> {
+    encode_with_attributes(mesh, &Attributes::default(), options, progress)
+}
+
+/// Encodes a mesh with its attributes, each quantised to the bits that [`EncodeOptions`] has for its kind; see
+/// [`encode`]. Vertices that are repeated to cut the mesh have the values of the one they repeat.
+///
+/// # Errors
+/// As [`encode`], and if an attribute does not fit the mesh, or there are more than the format can hold.
+pub fn encode_with_attributes(
+    mesh: &TriMesh,
+    attributes: &Attributes,
     options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Encoded, EncodeError> {
@@ -55,10 +72,14 @@ pub fn encode_with_progress(
         repeated_vertices: source.len() - ordered.cells.len(),
     };
     let cells: Vec<[i32; 3]> = source.iter().map(|&v| ordered.cells[v as usize]).collect();
-    let hierarchy = analysis::analyse(surface, &cells, options, progress);
+    let vertices: Vec<u32> = source.iter().map(|&v| ordered.vertex_source[v as usize]).collect();
+    let elements = attributes::Elements { vertices: &vertices, corners: &ordered.corner_source };
+    let quantised = attributes::quantise(mesh, attributes, elements, options)?;
+    drop((source, vertices));
+    let hierarchy = analysis::analyse(surface, &cells, quantised.seams(), options, progress);
     let write = |steps_per_edge| {
         let schedule = schedule::plan(&hierarchy, options.quantization, steps_per_edge);
-        write::write(&hierarchy, &cells, &grid, &schedule, options, progress)
+        write::write(&hierarchy, &cells, &grid, &quantised, &schedule, options, progress)
     };
     let mut bytes = write(options.steps_per_edge);
     if options.optimize == Optimize::Size && options.steps_per_edge.is_none() {
@@ -70,5 +91,5 @@ pub fn encode_with_progress(
     }
     // The encoder's own bytes always hold a header.
     let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(bytes.len()))?;
-    Ok(Encoded { bytes, info, repair })
+    Ok(Encoded { bytes, info, repair, values_dropped: quantised.values_dropped })
 }

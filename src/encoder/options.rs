@@ -26,6 +26,14 @@ pub struct EncodeOptions {
     /// Grid steps to the mean edge of a level, from which its precision follows; `None` follows the
     /// error of each level instead, which makes better prefixes. Default `None`.
     pub steps_per_edge: Option<f64>,
+    /// Bits of each of the two coordinates of a normal on the octahedron, 2 to 30. Default 8.
+    pub normal_bits: u32,
+    /// Bits of a texture coordinate, 1 to 30. Default 10.
+    pub uv_bits: u32,
+    /// Bits of a component of a colour, 1 to 30. Default 8: colours of 8 bits are kept exactly.
+    pub color_bits: u32,
+    /// Bits of a component of any other attribute, 1 to 30. Integers that fit are kept exactly. Default 12.
+    pub generic_bits: u32,
 }
 
 impl Default for EncodeOptions {
@@ -39,6 +47,10 @@ impl Default for EncodeOptions {
             partition: Partition::default(),
             optimize: Optimize::default(),
             steps_per_edge: None,
+            normal_bits: 8,
+            uv_bits: 10,
+            color_bits: 8,
+            generic_bits: 12,
         }
     }
 }
@@ -48,6 +60,16 @@ impl EncodeOptions {
         let fail = |option, value: String, allowed| Err(EncodeError::Option { option, value, allowed });
         if !(1..=30).contains(&self.quantization) {
             return fail("quantization", self.quantization.to_string(), "1 to 30 bits");
+        }
+        for (option, bits, least) in [
+            ("normal bits", self.normal_bits, 2),
+            ("uv bits", self.uv_bits, 1),
+            ("color bits", self.color_bits, 1),
+            ("generic bits", self.generic_bits, 1),
+        ] {
+            if !(least..=30).contains(&bits) {
+                return fail(option, bits.to_string(), if least == 2 { "2 to 30" } else { "1 to 30" });
+            }
         }
         if self.levels.is_some_and(|n| n > MAX_LEVELS) {
             return fail("levels", self.levels.unwrap_or(0).to_string(), "0 to 128");
@@ -77,6 +99,8 @@ pub struct Encoded {
     pub info: StreamInfo,
     /// What had to be cut or dropped.
     pub repair: RepairReport,
+    /// Rows of attributes that are not finite: what has one counts as having no value.
+    pub values_dropped: usize,
 }
 
 /// How far an encoder is.

@@ -1,6 +1,8 @@
 //! Up the levels: the decoder's own steps, with the truth at hand.
 
 use super::analysis::{ANALYSIS_SHARE, Hierarchy};
+use super::attribute_writer::AttributeWriter;
+use super::attributes::Quantised;
 use super::options::{EncodeOptions, Progress};
 use super::schedule::{Schedule, Step};
 use crate::bitstream::chunk::{self, kind};
@@ -22,11 +24,12 @@ pub(super) fn write(
     hierarchy: &Hierarchy,
     cells: &[[i32; 3]],
     grid: &Grid,
+    attributes: &Quantised,
     schedule: &Schedule,
     options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Vec<u8> {
-    let mut writer = PassWriter::new(hierarchy, cells, grid.precision, schedule.base_precision);
+    let mut writer = PassWriter::new(hierarchy, cells, attributes, grid.precision, schedule.base_precision);
     for step in &schedule.steps {
         let fraction = writer.mesh.positions.len() as f64 / hierarchy.num_vertices as f64;
         progress(Progress { stage: "passes", fraction: ANALYSIS_SHARE + (1.0 - ANALYSIS_SHARE) * fraction });
@@ -36,15 +39,18 @@ pub(super) fn write(
         }
     }
     debug_assert_eq!(writer.mesh.surface.triangles.len(), hierarchy.num_faces);
-    assemble(grid, hierarchy, options, &writer.passes)
+    let values = writer.attributes.into_payloads();
+    assemble(grid, hierarchy, attributes, options, &writer.passes, &values)
 }
 
 /// Frames headers and passes.
 fn assemble(
     grid: &Grid,
     hierarchy: &Hierarchy,
+    attributes: &Quantised,
     options: &EncodeOptions,
     passes: &[(Pass, Vec<u8>)],
+    values: &[Vec<u8>],
 ) -> Vec<u8> {
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
@@ -61,10 +67,16 @@ fn assemble(
     if has_levels && !is_usual {
         chunk::write(&mut bytes, kind::PROVENANCE, &provenance.write());
     }
+    if !attributes.is_empty() {
+        chunk::write(&mut bytes, kind::DECLARATIONS, &attributes.declare(values).write());
+    }
     let rows: Vec<Pass> = passes.iter().map(|(row, _)| *row).collect();
     chunk::write(&mut bytes, kind::PASSES, &pass_table::write_passes(&rows));
-    for (row, payload) in passes {
+    for (i, (row, payload)) in passes.iter().enumerate() {
         chunk::write(&mut bytes, row.action.kind(), payload);
+        if let Some(values) = values.get(i).filter(|values| !values.is_empty()) {
+            chunk::write(&mut bytes, kind::ATTRIBUTES, values);
+        }
     }
     bytes
 }
@@ -82,13 +94,20 @@ struct PassWriter<'a> {
     connectivity: ConnectivityModels,
     coordinates: CoordinateModels,
     refine: RefineModels,
+    attributes: AttributeWriter<'a>,
     /// Scratch: patch of each slot of the full surface.
     patch_of_slot: Vec<u32>,
     passes: Vec<(Pass, Vec<u8>)>,
 }
 
 impl<'a> PassWriter<'a> {
-    fn new(hierarchy: &Hierarchy, cells: &'a [[i32; 3]], full_precision: u32, precision: u32) -> Self {
+    fn new(
+        hierarchy: &Hierarchy,
+        cells: &'a [[i32; 3]],
+        attributes: &'a Quantised,
+        full_precision: u32,
+        precision: u32,
+    ) -> Self {
         let hidden = full_precision - precision;
         let positions: Vec<[i32; 3]> =
             hierarchy.base_vertices.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)).collect();
@@ -111,6 +130,7 @@ impl<'a> PassWriter<'a> {
             connectivity: ConnectivityModels::new(),
             coordinates: CoordinateModels::new(),
             refine: RefineModels::new(),
+            attributes: AttributeWriter::new(attributes),
             patch_of_slot: vec![NOT_IN_PATCH; hierarchy.num_faces],
             passes: Vec::new(),
         };
@@ -123,6 +143,8 @@ impl<'a> PassWriter<'a> {
             bytes: 0,
         };
         writer.finish_pass(row, num_vertices.max(num_faces), coder);
+        let Self { mesh, vertex_source, face_source, attributes, .. } = &mut writer;
+        attributes.base(mesh, hierarchy, vertex_source, face_source);
         writer
     }
 
@@ -145,6 +167,7 @@ impl<'a> PassWriter<'a> {
         debug_assert_eq!(self.mesh.positions, target);
         let row = Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 0 };
         self.finish_pass(row, target.len(), coder);
+        self.attributes.refine();
     }
 
     fn split(&mut self, record: &LevelRecord) {
@@ -163,7 +186,8 @@ impl<'a> PassWriter<'a> {
             let star = expect_sound(builder.restore(&mut self.mesh.surface, &patches, j));
             let removed = record.get(odd as usize);
             self.face_source.resize(self.mesh.surface.triangles.len(), 0);
-            name_faces(star, &removed, &self.vertex_source, &mut self.face_source);
+            let shift = name_faces(star, &removed, &self.vertex_source, &mut self.face_source);
+            self.attributes.restore(star, record, &removed, shift);
         }
         let hidden = self.full_precision - self.precision;
         self.vertex_source.extend(odd.iter().map(|&o| record.get(o as usize).vertex));
@@ -180,6 +204,7 @@ impl<'a> PassWriter<'a> {
             bytes: 0,
         };
         self.finish_pass(row, record.len(), coder);
+        self.attributes.split(&self.mesh, &patches, num_coarse, &self.vertex_source);
     }
 
     /// Translates a record into the decoder's numbering.
@@ -222,18 +247,20 @@ fn odd_of(target: &ConnectivityTarget, patches: &Patches, patch: usize) -> u32 {
     }
 }
 
-/// Notes which slots of the full surface the triangles of a star have.
+/// Notes which slots of the full surface the triangles of a star have. Returns which of the removed faces the first
+/// one is.
 fn name_faces(
     star: &Star,
     removed: &crate::simplify::record::Removed,
     vertex_source: &[u32],
     face_source: &mut [u32],
-) {
+) -> usize {
     let first = vertex_source[star.ring[0] as usize];
     let shift = removed.ring.iter().position(|&v| v == first).unwrap_or(0);
     for (i, &face) in star.faces.iter().enumerate() {
         face_source[face as usize] = removed.faces[(shift + i) % removed.faces.len()];
     }
+    shift
 }
 
 /// The passes fail on malformed payloads only, and an encoder reads none.

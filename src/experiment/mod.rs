@@ -27,6 +27,7 @@ use crate::levels::Level;
 use crate::mesh::Surface;
 use crate::mesh::repair::{RepairReport, Repaired, repair};
 use crate::partition::{Geometry, by_score, remove_in_order};
+use crate::simplify::Seams;
 use crate::simplify::ShrinkingSurface;
 use crate::{EncodeError, TriMesh};
 use apd::average_plane_distance;
@@ -190,7 +191,7 @@ impl Experiment {
             let order = by_score(&level.vertices, &scores);
             let partition_seconds = start.elapsed().as_secs_f64();
             let start = Instant::now();
-            let record = remove_in_order(&mut shrinking, geometry, &order, None);
+            let record = remove_in_order(&mut shrinking, geometry, &order, None, &mut Seams::default());
             let removal_seconds = start.elapsed().as_secs_f64();
             if record.len() == 0 {
                 break;

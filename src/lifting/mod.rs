@@ -3,4 +3,6 @@
 
 pub(crate) mod affine;
 pub(crate) mod consensus;
+pub(crate) mod filter;
 pub(crate) mod neighbourhood;
+pub(crate) mod plane_fit;

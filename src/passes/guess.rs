@@ -13,23 +13,25 @@ use crate::lifting::neighbourhood::{NUM_FEATURES, Outlook};
 /// Kind of the coordinate closest to the normal.
 pub(crate) const ACROSS: usize = 2;
 /// Inputs of the scale models.
-const NUM_CUES: usize = 7;
+pub(super) const NUM_CUES: usize = 7;
 /// Smallest length that counts in a logarithm, in grid steps.
-const FLOOR: f32 = 0.35;
+pub(super) const FLOOR: f32 = 0.35;
 /// Typical residual over the exponential of its mean logarithm, and its inverse.
 const SCALE_FACTOR: f32 = 0.85;
-const SHARPNESS_FACTOR: f32 = 1.0 / SCALE_FACTOR;
+pub(super) const SHARPNESS_FACTOR: f32 = 1.0 / SCALE_FACTOR;
+/// Weights the scale models start with.
+const FIRST_SCALES: [f32; NUM_CUES] = [-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3];
 /// Step of the scale models.
 const SCALE_RATE: f32 = 0.02;
 /// Step of the experts' weights, where they start and the least they get. The fourth lane is empty.
-const TRUST_RATE: f32 = 0.02;
+pub(super) const TRUST_RATE: f32 = 0.02;
 const FIRST_TRUST: Lanes = Lanes([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.0]);
 const LEAST_TRUST: Lanes = Lanes([0.02, 0.02, 0.02, 0.0]);
-const TRUST_LEVELS: usize = 16;
+pub(super) const TRUST_LEVELS: usize = 16;
 /// Steepest slope of the surface over the two axes coded first that is believed.
 const MAX_SLOPE: f32 = 4.0;
 /// Bound on centres, far outside any grid.
-const MAX_CENTRE: f32 = 1e9;
+pub(super) const MAX_CENTRE: f32 = 1e9;
 
 /// What is learnt about coordinates; kept from pass to pass.
 #[derive(Clone)]
@@ -44,7 +46,7 @@ impl GuessModels {
     pub(crate) fn new() -> Self {
         Self {
             filters: vec![[AffineFilter::new(), AffineFilter::new()]; NUM_CLASSES],
-            scales: [ScaleModel::new(); NUM_KINDS],
+            scales: [ScaleModel::new(FIRST_SCALES); NUM_KINDS],
             trust: [[FIRST_TRUST; TRUST_LEVELS]; NUM_KINDS],
         }
     }
@@ -52,14 +54,13 @@ impl GuessModels {
 
 /// Linear models of the base-2 logarithms of the experts' residuals.
 #[derive(Clone, Copy)]
-struct ScaleModel {
+pub(super) struct ScaleModel {
     /// Lane `i` of each cue's weight is for expert `i`.
     weights: [Lanes; NUM_CUES],
 }
 
 impl ScaleModel {
-    const fn new() -> Self {
-        let weights = [-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3];
+    pub(super) const fn new(weights: [f32; NUM_CUES]) -> Self {
         let mut lanes = [Lanes::ZERO; NUM_CUES];
         let mut i = 0;
         while i < NUM_CUES {
@@ -70,13 +71,13 @@ impl ScaleModel {
     }
 
     #[inline(always)]
-    fn predict(&self, cues: &[Lanes; NUM_CUES]) -> Lanes {
+    pub(super) fn predict(&self, cues: &[Lanes; NUM_CUES]) -> Lanes {
         let p: [Lanes; NUM_CUES] = std::array::from_fn(|i| self.weights[i] * cues[i]);
         (((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + p[6])).clamp(-4.0, 32.0)
     }
 
     #[inline(always)]
-    fn learn(&mut self, cues: &[Lanes; NUM_CUES], predicted: Lanes, truth: Lanes) {
+    pub(super) fn learn(&mut self, cues: &[Lanes; NUM_CUES], predicted: Lanes, truth: Lanes) {
         let error = (truth - predicted).clamp(-3.0, 3.0);
         let s: [Lanes; NUM_CUES] = std::array::from_fn(|i| cues[i] * cues[i]);
         let energy = Lanes::splat(1.0) + (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + s[6]));

@@ -5,6 +5,7 @@
 //!
 //! [`BitCoder`]: crate::bitstream::range_coder::BitCoder
 
+pub(crate) mod attribute;
 pub(crate) mod base;
 pub(crate) mod connectivity;
 pub(crate) mod coordinates;

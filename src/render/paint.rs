@@ -101,7 +101,7 @@ mod tests {
     fn attributes_have_their_colours() {
         let mesh = TriMesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]).unwrap();
         let paint = |semantic, n, values| {
-            let indices = Some(vec![0, 1, NO_ROW]);
+            let indices = Some(vec![0, 1, 1]);
             let attribute = Attribute::new("a", semantic, Domain::Vertex, n, values);
             CornerPaint::new(&mesh, &Attribute { indices, ..attribute })
         };
@@ -119,5 +119,9 @@ mod tests {
         assert_eq!(at(&uv, 0), Some([130, 66, 128]));
         assert_eq!(at(&uv, 1), Some([2, 189, 96]), "beyond the unit square, and dark");
         assert!(paint(Semantic::Generic, 1, Values::U8(vec![0; 2])).is_none());
+        let values = Values::U8(vec![9; 3]);
+        let attribute = Attribute::new("c", Semantic::Color(0), Domain::Face, 3, values);
+        let without = CornerPaint::new(&mesh, &Attribute { indices: Some(vec![NO_ROW]), ..attribute });
+        assert_eq!(at(&without, 2), Some([255, 0, 255]));
     }
 }

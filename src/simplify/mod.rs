@@ -7,8 +7,10 @@ pub(crate) mod geometry;
 pub(crate) mod hole;
 pub(crate) mod memory;
 pub(crate) mod record;
+pub(crate) mod seams;
 pub(crate) mod shrinking;
 pub(crate) mod triangulate;
 
 pub(crate) use record::LevelRecord;
+pub(crate) use seams::Seams;
 pub(crate) use shrinking::{ShrinkingSurface, Star};

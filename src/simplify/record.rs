@@ -11,6 +11,9 @@ pub(crate) struct LevelRecord {
     /// Slots of the star's faces, face i at ring edge i. The first `ring − 2` slots hold the patch
     /// afterwards, the others are free.
     faces: Vec<u32>,
+    /// Per attribute of corners the rows of each of these faces at both ends of its ring edge and at the vertex, per
+    /// attribute of faces the row of each face.
+    rows: Vec<Vec<u32>>,
 }
 
 /// One removed vertex with what stood around it.
@@ -19,6 +22,8 @@ pub(crate) struct Removed<'a> {
     pub(crate) vertex: u32,
     pub(crate) ring: &'a [u32],
     pub(crate) faces: &'a [u32],
+    /// Where these faces are among all of the level.
+    pub(crate) first_face: usize,
 }
 
 impl Removed<'_> {
@@ -41,6 +46,19 @@ impl LevelRecord {
         self.face_ends.push(self.faces.len() as u32);
     }
 
+    /// The rows of attributes at the faces of the vertex that was pushed last.
+    pub(crate) fn push_rows(&mut self, attribute: usize, rows: impl Iterator<Item = u32>) {
+        if self.rows.len() <= attribute {
+            self.rows.resize(attribute + 1, Vec::new());
+        }
+        self.rows[attribute].extend(rows);
+    }
+
+    /// All rows of an attribute.
+    pub(crate) fn rows(&self, attribute: usize) -> &[u32] {
+        &self.rows[attribute]
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.vertices.len()
     }
@@ -51,6 +69,7 @@ impl LevelRecord {
             vertex: self.vertices[index],
             ring: &self.rings[start(&self.ring_ends)..self.ring_ends[index] as usize],
             faces: &self.faces[start(&self.face_ends)..self.face_ends[index] as usize],
+            first_face: start(&self.face_ends),
         }
     }
 

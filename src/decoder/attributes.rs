@@ -1,0 +1,216 @@
+//! Attributes of the mesh so far: the chunks behind the passes, and what is guessed where they have not come.
+
+use super::frame::PassInfo;
+use crate::bitstream::header::Action;
+use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeState};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Values};
+use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
+use crate::passes::attribute::{Brought, Coding, Declaration, Declarations, Desk, Layer};
+use crate::passes::patch::Patches;
+use crate::passes::work::Work;
+use crate::passes::{EXHAUSTED, GridMesh, Malformed};
+
+/// What is known of all attributes.
+pub(super) struct AttributeDecoder {
+    pub(super) declarations: Declarations,
+    state: State,
+    /// Per attribute, bytes of the payloads decoded so far.
+    bytes: Vec<u64>,
+}
+
+#[derive(Clone)]
+struct State {
+    layers: Vec<Layer>,
+    /// What a pass brought whose values are not all there.
+    pending: Option<Pending>,
+}
+
+/// A pass whose values are missing, from this layer and place on.
+#[derive(Clone)]
+struct Pending {
+    patches: Option<Patches>,
+    first: usize,
+    coder: Option<RangeState>,
+    layer: usize,
+    place: usize,
+}
+
+impl AttributeDecoder {
+    pub(super) fn new(declarations: Declarations) -> Self {
+        let layers: Vec<Layer> = declarations.list.iter().map(Layer::new).collect();
+        let bytes = vec![0; layers.len()];
+        Self { declarations, state: State { layers, pending: None }, bytes }
+    }
+
+    /// Bytes per attribute so far.
+    pub(super) fn bytes(&self) -> &[u64] {
+        &self.bytes
+    }
+
+    /// A pass has brought vertices from `first` on; `patches` if it is a split.
+    pub(super) fn expect(&mut self, patches: Option<Patches>, first: usize) {
+        self.state.pending = Some(Pending { patches, first, coder: None, layer: 0, place: 0 });
+    }
+
+    /// Goes on with the values of the pass that is pending; true once they are all there.
+    ///
+    /// # Errors
+    /// If the payload names something that no encoder writes.
+    pub(super) fn advance(
+        &mut self,
+        mesh: &GridMesh,
+        payload: &[u8],
+        work: &mut Work,
+    ) -> Result<bool, Malformed> {
+        let mut coder = match self.state.pending.as_ref().and_then(|pending| pending.coder.as_ref()) {
+            Some(state) => RangeDecoder::resume(payload, state),
+            None => RangeDecoder::new(payload),
+        };
+        let bytes = &mut self.bytes;
+        let mut last = coder.position();
+        let is_done = self.state.advance(mesh, &mut coder, work, |layer, position| {
+            bytes[layer] += (position - last) as u64;
+            last = position;
+        })?;
+        if is_done {
+            if coder.is_exhausted() {
+                return Err(Malformed(EXHAUSTED));
+            }
+            self.state.pending = None;
+        } else if let Some(pending) = &mut self.state.pending {
+            pending.coder = Some(coder.pause());
+        }
+        Ok(is_done)
+    }
+
+    /// Attributes of `mesh`, which has `num_vertices` and `num_faces`; values that have not come are guessed, with
+    /// the help of the beginning of their payload if no other part has been decoded.
+    pub(super) fn attributes(&self, mesh: &GridMesh, cut: &[u8]) -> Attributes {
+        let Some(pending) = &self.state.pending else { return self.collect(&self.state.layers) };
+        let mut ahead = self.state.clone();
+        let has_begun = pending.coder.is_some();
+        let mut coder = RangeDecoder::of_cut(if has_begun || cut.len() < 5 { &[] } else { cut });
+        // A payload that is nonsense has its error when it is complete.
+        let _ = ahead.advance(mesh, &mut coder, &mut Work::unlimited(), |_, _| {});
+        self.collect(&ahead.layers)
+    }
+
+    /// Attributes of a mesh to which some vertices of a split have come back that is not complete.
+    pub(super) fn with_cut(&self, mesh: &GridMesh, patches: &Patches, first: usize) -> Attributes {
+        let mut ahead = self.state.clone();
+        let patches = Some(patches.clone());
+        ahead.pending = Some(Pending { patches, first, coder: None, layer: 0, place: 0 });
+        let _ = ahead.advance(mesh, &mut RangeDecoder::of_cut(&[]), &mut Work::unlimited(), |_, _| {});
+        self.collect(&ahead.layers)
+    }
+
+    fn collect(&self, layers: &[Layer]) -> Attributes {
+        let mut attributes = Attributes::default();
+        attributes.material_libraries.clone_from(&self.declarations.material_libraries);
+        attributes.list.extend(self.declarations.list.iter().zip(layers).map(|(d, l)| collect(d, l)));
+        attributes
+    }
+}
+
+impl State {
+    fn advance(
+        &mut self,
+        mesh: &GridMesh,
+        coder: &mut RangeDecoder,
+        work: &mut Work,
+        mut finished: impl FnMut(usize, usize),
+    ) -> Result<bool, Malformed> {
+        let Some(pending) = &mut self.pending else { return Ok(true) };
+        let brought = Brought { mesh, patches: pending.patches.as_ref(), first: pending.first };
+        let mut desk = Desk::default();
+        while let Some(layer) = self.layers.get_mut(pending.layer) {
+            let is_done = layer.code_some(coder, brought, &mut pending.place, None, work, &mut desk)?;
+            finished(pending.layer, coder.position());
+            if !is_done {
+                return Ok(false);
+            }
+            pending.layer += 1;
+            pending.place = 0;
+        }
+        Ok(true)
+    }
+}
+
+/// One attribute as callers know it.
+fn collect(declaration: &Declaration, layer: &Layer) -> Attribute {
+    let rows = &layer.rows;
+    let mut values = declaration.scalar.map_or(Values::Names(Vec::new()), Values::new);
+    let mut indices = Vec::with_capacity(rows.of.len());
+    if let Coding::Table { rows: table } = &declaration.coding {
+        values = table.clone();
+        let symbol = |&row: &u32| if row == NO_ROW { NO_ROW } else { rows.get(row)[0] as u32 };
+        indices.extend(rows.of.iter().map(symbol));
+    } else {
+        let mut place = vec![NO_ROW; if declaration.domain == Domain::Corner { rows.len() } else { 0 }];
+        let mut count = 0;
+        for &row in &rows.of {
+            let known = place.get(row as usize).copied().unwrap_or(NO_ROW);
+            let index = match (row, known) {
+                (NO_ROW, _) => NO_ROW,
+                (_, NO_ROW) => {
+                    declaration.restore(rows.get(row), &mut values);
+                    count += 1;
+                    count - 1
+                }
+                _ => known,
+            };
+            if let Some(place) = place.get_mut(row as usize) {
+                *place = index;
+            }
+            indices.push(index);
+        }
+    }
+    let has_own_rows = indices.iter().zip(0..).all(|(&index, k)| index == k);
+    let has_own_rows = has_own_rows && values.len() == indices.len() * declaration.num_components;
+    Attribute {
+        is_normalized: declaration.is_normalized,
+        indices: (!has_own_rows).then_some(indices),
+        ..Attribute::new(
+            declaration.name.clone(),
+            declaration.semantic,
+            declaration.domain,
+            declaration.num_components,
+            values,
+        )
+    }
+}
+
+/// Checks the bytes of values against what the passes bring.
+pub(super) fn check_density(declarations: &Declarations, passes: &[PassInfo]) -> Result<(), &'static str> {
+    let num_channels: u64 = declarations.list.iter().map(|d| d.num_channels() as u64).sum();
+    for (pass, &bytes) in passes.iter().zip(&declarations.bytes) {
+        if pass.row.action == Action::Refine || num_channels == 0 {
+            if bytes > 0 {
+                return Err("values of attributes behind a pass that brings none");
+            }
+        } else if bytes == 0 {
+            return Err("a pass without the values of its attributes");
+        } else if u64::from(pass.row.vertices) * num_channels > MAX_VALUES_PER_BYTE * (u64::from(bytes) + 1) {
+            return Err("a pass has more values of attributes than its bytes could hold");
+        }
+    }
+    Ok(())
+}
+
+/// Bytes of memory that attributes of a mesh may take.
+pub(super) fn memory_for(declarations: &Declarations, pass: &PassInfo) -> u64 {
+    /// The models of one attribute.
+    const FIXED_BYTES: u64 = 200 << 10;
+    let (vertices, faces) = (u64::from(pass.vertices), u64::from(pass.faces));
+    let of_one = |declaration: &Declaration| {
+        let row = 4 * declaration.num_channels() as u64 + 1;
+        FIXED_BYTES
+            + match declaration.domain {
+                Domain::Vertex => vertices * (row + 4),
+                // A pass may replace as many rows as there are.
+                Domain::Corner => faces * 3 * (2 * row + 4),
+                Domain::Face => faces * (2 * row + 4),
+            }
+    };
+    declarations.list.iter().map(of_one).sum()
+}

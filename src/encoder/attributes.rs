@@ -1,0 +1,296 @@
+//! From attributes to integers: how each is declared, and the rows of its elements.
+
+use super::options::EncodeOptions;
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
+use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
+use crate::passes::attribute::octahedron::Octahedron;
+use crate::passes::attribute::{Coding, Declaration, Declarations};
+use crate::simplify::Seams;
+use crate::{EncodeError, TriMesh};
+use std::collections::HashMap;
+
+/// All attributes of a surface as integers.
+#[derive(Default)]
+pub(super) struct Quantised {
+    pub(super) list: Vec<QuantisedAttribute>,
+    material_libraries: Vec<String>,
+    /// Rows that are not finite.
+    pub(super) values_dropped: usize,
+}
+
+/// One attribute as integers.
+pub(super) struct QuantisedAttribute {
+    pub(super) declaration: Declaration,
+    /// Different rows, channel by channel.
+    pub(super) rows: Vec<i32>,
+    /// The row of each vertex, corner or face of the surface, or [`NO_ROW`].
+    pub(super) of: Vec<u32>,
+    /// Which of the seams' attributes it is, unless it belongs to vertices.
+    pub(super) track: Option<usize>,
+}
+
+impl Quantised {
+    pub(super) fn is_empty(&self) -> bool {
+        self.list.is_empty() && self.material_libraries.is_empty()
+    }
+
+    pub(super) fn seams(&self) -> Seams {
+        let mut seams = Seams::default();
+        for attribute in self.list.iter().filter(|attribute| attribute.track.is_some()) {
+            seams.follow(attribute.declaration.domain, attribute.of.clone());
+        }
+        seams
+    }
+
+    /// What a stream with these values behind its passes says of them.
+    pub(super) fn declare(&self, values: &[Vec<u8>]) -> Declarations {
+        Declarations {
+            list: self.list.iter().map(|attribute| attribute.declaration.clone()).collect(),
+            material_libraries: self.material_libraries.clone(),
+            bytes: values.iter().map(|values| values.len() as u32).collect(),
+        }
+    }
+}
+
+/// What the parts of a surface are in the mesh.
+#[derive(Clone, Copy)]
+pub(super) struct Elements<'a> {
+    /// The vertex of the mesh that each vertex is.
+    pub(super) vertices: &'a [u32],
+    /// The corner of the mesh that the first corner of each face is.
+    pub(super) corners: &'a [u32],
+}
+
+impl Elements<'_> {
+    fn of(self, domain: Domain) -> Vec<usize> {
+        let corners = self.corners.iter().map(|&c| c as usize);
+        match domain {
+            Domain::Vertex => self.vertices.iter().map(|&v| v as usize).collect(),
+            Domain::Corner => corners.flat_map(|c| [0, 1, 2].map(|k| c / 3 * 3 + (c + k) % 3)).collect(),
+            Domain::Face => corners.map(|c| c / 3).collect(),
+        }
+    }
+}
+
+/// Quantises the attributes of `mesh` for a surface.
+///
+/// # Errors
+/// If one does not fit the mesh, or there are too many.
+pub(super) fn quantise(
+    mesh: &TriMesh,
+    attributes: &Attributes,
+    elements: Elements,
+    options: &EncodeOptions,
+) -> Result<Quantised, EncodeError> {
+    let mut quantised =
+        Quantised { material_libraries: attributes.material_libraries.clone(), ..Quantised::default() };
+    let mut num_tracks = 0;
+    for attribute in &attributes.list {
+        let fail = |what: String| EncodeError::Attribute { name: attribute.name.clone(), what };
+        attribute.validate(mesh).map_err(|e| fail(e.to_string()))?;
+        if quantised.list.len() == MAX_ATTRIBUTES {
+            return Err(fail(format!("a stream holds {MAX_ATTRIBUTES} attributes")));
+        }
+        let row = |&element: &usize| attribute.row(element).map_or(NO_ROW, |row| row as u32);
+        let mut of: Vec<u32> = elements.of(attribute.domain).iter().map(row).collect();
+        let is_dropped = |row: u32| row != NO_ROW && !is_finite(attribute, row as usize);
+        for row in of.iter_mut().filter(|row| is_dropped(**row)) {
+            *row = NO_ROW;
+            quantised.values_dropped += 1;
+        }
+        let used = compact(&mut of, attribute.num_rows());
+        let has_missing = of.contains(&NO_ROW);
+        let coding = choose(attribute, &used, options)
+            .ok_or_else(|| fail(format!("more than {MAX_TABLE} different names")))?;
+        let declaration = Declaration {
+            name: attribute.name.clone(),
+            semantic: attribute.semantic,
+            domain: attribute.domain,
+            num_components: attribute.num_components,
+            is_normalized: attribute.is_normalized,
+            scalar: attribute.values.scalar_type(),
+            has_missing,
+            coding,
+        };
+        let rows = integers(attribute, &used, &declaration);
+        let track = (attribute.domain != Domain::Vertex).then_some(num_tracks);
+        num_tracks += usize::from(track.is_some());
+        let mut one = QuantisedAttribute { declaration, rows, of, track };
+        if track.is_some() {
+            one.merge_equal();
+        }
+        quantised.list.push(one);
+    }
+    Ok(quantised)
+}
+
+fn is_finite(attribute: &Attribute, row: usize) -> bool {
+    let n = attribute.num_components;
+    (row * n..row * n + n).all(|k| attribute.values.number(k).is_none_or(f64::is_finite))
+}
+
+/// Renumbers rows by their first use; returns those that are used.
+fn compact(of: &mut [u32], num_rows: usize) -> Vec<u32> {
+    let mut place = vec![NO_ROW; num_rows];
+    let mut used = Vec::new();
+    for row in of.iter_mut().filter(|row| **row != NO_ROW) {
+        let place = &mut place[*row as usize];
+        if *place == NO_ROW {
+            *place = used.len() as u32;
+            used.push(*row);
+        }
+        *row = *place;
+    }
+    used
+}
+
+/// How the rows are coded: names, and numbers that tell things apart, by a table; directions on the octahedron; all
+/// others uniformly, integers that fit exactly. `None` if a table would be too long for names.
+fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOptions) -> Option<Coding> {
+    let Some(scalar) = attribute.values.scalar_type() else { return table(attribute, used) };
+    let is_label = matches!(attribute.semantic, Semantic::Material | Semantic::Group | Semantic::Object)
+        || attribute.domain == Domain::Face && scalar.is_integer();
+    if is_label && let Some(table) = table(attribute, used) {
+        return Some(table);
+    }
+    let bits = match attribute.semantic {
+        Semantic::Normal => options.normal_bits,
+        Semantic::TexCoord(_) => options.uv_bits,
+        Semantic::Color(_) => options.color_bits,
+        _ => options.generic_bits,
+    };
+    let n = attribute.num_components;
+    let number = |row: u32, k: usize| attribute.values.number(row as usize * n + k).unwrap_or(0.0);
+    let mut low = vec![f64::INFINITY; n];
+    let mut high = vec![f64::NEG_INFINITY; n];
+    for &row in used {
+        for k in 0..n {
+            low[k] = low[k].min(number(row, k));
+            high[k] = high[k].max(number(row, k));
+        }
+    }
+    if used.is_empty() {
+        (low, high) = (vec![0.0; n], vec![0.0; n]);
+    }
+    let range = low.iter().zip(&high).map(|(l, h)| h - l).fold(0.0, f64::max);
+    let steps = f64::from((1_u32 << bits) - 1);
+    if scalar.is_integer() && range <= steps {
+        let bits = 64 - (range as u64).leading_zeros();
+        return Some(Coding::Uniform { bits: bits.max(1), minimum: low, step: 1.0 });
+    }
+    if attribute.semantic == Semantic::Normal && n == 3 && are_directions(attribute, used, scalar) {
+        return Some(Coding::Octahedral { bits });
+    }
+    // Fractions of 8 bits that a text file holds come back as they were.
+    let is_fraction = matches!(attribute.semantic, Semantic::Color(_)) && !scalar.is_integer();
+    if is_fraction && low.iter().all(|&l| l >= 0.0) && high.iter().all(|&h| h <= 1.0) {
+        return Some(Coding::Uniform { bits, minimum: vec![0.0; n], step: 1.0 / steps });
+    }
+    // A range beyond double precision is quantised in halves.
+    let step = if range.is_finite() { range / steps } else { f64::MAX / steps * 2.0 };
+    let step = if step > 0.0 { step } else { 1.0 };
+    Some(Coding::Uniform { bits, minimum: low.iter().map(|l| l + 0.0).collect(), step })
+}
+
+/// Whether vectors have unit length, to a tenth.
+fn are_directions(attribute: &Attribute, used: &[u32], scalar: ScalarType) -> bool {
+    if scalar.is_integer() && !attribute.is_normalized {
+        return false;
+    }
+    used.iter().all(|&row| {
+        let squared = (0..3).filter_map(|k| attribute.number(row as usize, k)).map(|x| x * x).sum::<f64>();
+        (0.81..=1.21).contains(&squared)
+    })
+}
+
+/// The different rows in the order of their first use; `None` if there are too many.
+fn table(attribute: &Attribute, used: &[u32]) -> Option<Coding> {
+    let n = attribute.num_components;
+    let mut rows = attribute.values.emptied();
+    let mut seen = HashMap::new();
+    for &row in used {
+        let key = key_of(attribute, row);
+        if seen.insert(key, ()).is_none() {
+            let first = row as usize * n;
+            match (&attribute.values, &mut rows) {
+                (Values::Names(names), Values::Names(out)) => out.push(names[first].clone()),
+                (values, out) => {
+                    (first..first + n).filter_map(|k| values.bits(k)).for_each(|b| out.push_bits(b))
+                }
+            }
+        }
+    }
+    if rows.is_empty() {
+        // Nothing has a value, but a table has rows.
+        match &mut rows {
+            Values::Names(names) => names.push(String::new()),
+            numbers => (0..n).for_each(|_| numbers.push_bits(0)),
+        }
+    }
+    (rows.len() / n <= MAX_TABLE).then_some(Coding::Table { rows })
+}
+
+/// What tells rows of a table apart: a name, or the bits of numbers.
+#[derive(PartialEq, Eq, Hash)]
+enum Key<'a> {
+    Name(&'a str),
+    Bits(Vec<u64>),
+}
+
+fn key_of(attribute: &Attribute, row: u32) -> Key<'_> {
+    let (row, n) = (row as usize, attribute.num_components);
+    match &attribute.values {
+        Values::Names(names) => Key::Name(&names[row]),
+        values => Key::Bits((row * n..row * n + n).filter_map(|k| values.bits(k)).collect()),
+    }
+}
+
+/// The channels of the rows that are used.
+fn integers(attribute: &Attribute, used: &[u32], declaration: &Declaration) -> Vec<i32> {
+    let n = attribute.num_components;
+    let number = |row: u32, k: usize| attribute.values.number(row as usize * n + k).unwrap_or(0.0);
+    match &declaration.coding {
+        Coding::Uniform { bits, minimum, step } => {
+            let most = f64::from((1_u32 << bits) - 1);
+            let channel = |row: u32, k: usize| {
+                ((number(row, k) - minimum[k]) / step + 0.5).floor().clamp(0.0, most) as i32
+            };
+            used.iter().flat_map(|&row| (0..n).map(move |k| channel(row, k))).collect()
+        }
+        Coding::Octahedral { bits } => {
+            let octahedron = Octahedron::new(*bits);
+            used.iter().flat_map(|&row| octahedron.place([0, 1, 2].map(|k| number(row, k)))).collect()
+        }
+        Coding::Table { .. } => {
+            let mut symbols = HashMap::new();
+            used.iter()
+                .map(|&row| {
+                    let next = symbols.len() as i32;
+                    *symbols.entry(key_of(attribute, row)).or_insert(next)
+                })
+                .collect()
+        }
+    }
+}
+
+impl QuantisedAttribute {
+    /// Makes equal rows one, so that seams are where numbers differ.
+    fn merge_equal(&mut self) {
+        let n = self.declaration.num_channels();
+        let mut seen: HashMap<&[i32], u32> = HashMap::new();
+        let mut rows = Vec::new();
+        let place: Vec<u32> = self
+            .rows
+            .chunks_exact(n)
+            .map(|row| {
+                let next = seen.len() as u32;
+                *seen.entry(row).or_insert_with(|| {
+                    rows.extend_from_slice(row);
+                    next
+                })
+            })
+            .collect();
+        self.of.iter_mut().filter(|row| **row != NO_ROW).for_each(|row| *row = place[*row as usize]);
+        self.rows = rows;
+    }
+}

@@ -1,0 +1,15 @@
+//! Attributes: what a stream declares, and the values that follow each pass (`format/SPEC.md`, sections 4.4,
+//! 7.6 and 8.4).
+//!
+//! A [`Layer`] holds the rows of one attribute and which of them every vertex, corner or face of the present mesh
+//! has. The corners at a vertex that share a row are a *wedge*; where the row changes, a seam runs.
+
+mod around;
+pub(crate) mod declaration;
+mod forecast;
+mod layer;
+pub(crate) mod octahedron;
+mod rows;
+
+pub(crate) use declaration::{Coding, Declaration, Declarations};
+pub(crate) use layer::{Brought, Desk, Layer, Truth};

@@ -1,0 +1,102 @@
+//! The rows of an attribute, and which of them an element has.
+
+use crate::mesh::{Domain, NO_ROW, Surface};
+
+/// Rows of integers, and the row of each vertex, corner or face.
+#[derive(Clone)]
+pub(crate) struct Rows {
+    pub(super) domain: Domain,
+    pub(super) num_channels: usize,
+    values: Vec<i32>,
+    /// Per row: base-2 logarithm of its residual, in eighths.
+    roughness: Vec<i8>,
+    /// The row that was appended last.
+    last: Vec<i32>,
+    /// Per element; [`NO_ROW`] for none, or none yet.
+    pub(crate) of: Vec<u32>,
+}
+
+impl Rows {
+    pub(super) fn new(domain: Domain, num_channels: usize) -> Self {
+        Self {
+            domain,
+            num_channels,
+            values: Vec::new(),
+            roughness: Vec::new(),
+            last: Vec::new(),
+            of: Vec::new(),
+        }
+    }
+
+    pub(crate) fn get(&self, row: u32) -> &[i32] {
+        let first = row as usize * self.num_channels;
+        &self.values[first..first + self.num_channels]
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.roughness.len()
+    }
+
+    pub(super) fn roughness(&self, row: u32) -> f32 {
+        f32::from(self.roughness[row as usize]) / 8.0
+    }
+
+    pub(super) fn push(&mut self, channels: &[i32], roughness: i8) -> u32 {
+        self.values.extend_from_slice(channels);
+        self.last.clear();
+        self.last.extend_from_slice(channels);
+        self.roughness.push(roughness);
+        self.len() as u32 - 1
+    }
+
+    /// The row that was appended last, if any was.
+    pub(super) fn last(&self) -> Option<&[i32]> {
+        (!self.last.is_empty()).then_some(&self.last)
+    }
+
+    /// Forgets rows that no element has any more, once they could be the most: splits replace rows of
+    /// corners and faces.
+    pub(super) fn compact(&mut self) {
+        if self.domain == Domain::Vertex || self.len() <= self.of.len() {
+            return;
+        }
+        let mut place = vec![NO_ROW; self.len()];
+        let (mut values, mut roughness) = (Vec::new(), Vec::new());
+        for row in self.of.iter_mut().filter(|row| **row != NO_ROW) {
+            let old = *row as usize;
+            if place[old] == NO_ROW {
+                place[old] = roughness.len() as u32;
+                values.extend_from_slice(&self.values[old * self.num_channels..][..self.num_channels]);
+                roughness.push(self.roughness[old]);
+            }
+            *row = place[old];
+        }
+        (self.values, self.roughness) = (values, roughness);
+    }
+
+    /// The row at a corner.
+    #[inline]
+    pub(super) fn at(&self, surface: &Surface, corner: u32) -> u32 {
+        let element = match self.domain {
+            Domain::Vertex => surface.vertex(corner),
+            Domain::Corner => corner,
+            Domain::Face => corner / 3,
+        };
+        self.of.get(element as usize).copied().unwrap_or(NO_ROW)
+    }
+
+    /// Whether two rows say the same.
+    pub(super) fn are_equal(&self, a: u32, b: u32) -> bool {
+        a == b || a != NO_ROW && b != NO_ROW && self.get(a) == self.get(b)
+    }
+
+    /// Makes room for the elements of a mesh.
+    pub(super) fn resize(&mut self, num_vertices: usize, num_faces: usize) {
+        let count = match self.domain {
+            Domain::Vertex => num_vertices,
+            Domain::Corner => 3 * num_faces,
+            Domain::Face => num_faces,
+        };
+        self.of.resize(count, NO_ROW);
+    }
+}
