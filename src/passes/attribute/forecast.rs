@@ -133,18 +133,11 @@ impl NumberModels {
             let origin = scratch.origin[channel];
             let wanted = if wanted.is_empty() { 0 } else { view.channel(wanted, channel) };
             let guess = self.guess(place, class, &outlook, by_ring, errors);
-            let value = if coder.is_guessing() {
-                let centre = (guess.mixture.centre.0[0] + 0.5).clamp(-MAX_CENTRE, MAX_CENTRE);
-                let near = origin.saturating_add(if centre < 0.0 { centre - 1.0 } else { centre } as i32);
-                near.clamp(self.range[0], self.range[1])
-            } else {
-                let expected = guess.expectation(origin, place, class, &outlook, by_ring);
-                let value = self.residuals.code(coder, &expected, wanted)?;
-                if !(self.range[0]..=self.range[1]).contains(&value) {
-                    return None;
-                }
-                value
-            };
+            let expected = guess.expectation(origin, place, class, &outlook, by_ring);
+            let value = self.residuals.code(coder, &expected, wanted);
+            // What a cut payload does not tell is as expected.
+            let value = if coder.is_guessing() { Some(guess.likeliest(origin, self.range)) } else { value };
+            let value = value.filter(|value| (self.range[0]..=self.range[1]).contains(value))?;
             let truth = value.wrapping_sub(origin) as f32;
             self.learn(place, class, &guess, &outlook, errors, truth);
             let error = truth - guess.mixture.centre.0[0];
@@ -343,6 +336,12 @@ struct Guess {
 }
 
 impl Guess {
+    fn likeliest(&self, origin: i32, [low, high]: [i32; 2]) -> i32 {
+        let centre = self.mixture.centre.0[0];
+        let nearest = (if centre < 0.0 { centre - 0.5 } else { centre + 0.5 }) as i32;
+        origin.saturating_add(nearest).clamp(low, high)
+    }
+
     fn expectation(
         &self,
         origin: i32,
