@@ -36,7 +36,10 @@ pub mod render;
 #[cfg(feature = "encoder")]
 mod simplify;
 
-pub use decoder::{DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Step, StreamInfo, Update, decode};
+pub use decoder::{
+    DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Step, StreamInfo, TrailingInfo, TrailingKind,
+    Update, decode,
+};
 #[cfg(feature = "encoder")]
 pub use encoder::{EncodeOptions, Encoded, Progress, encode, encode_with_progress};
 pub use error::DecodeError;

@@ -25,6 +25,10 @@ impl Encode {
         options.partition = self.partition;
         options.optimize = self.optimize;
         options.steps_per_edge = self.steps_per_edge;
+        options.lossless = self.lossless;
+        options.keep_isolated = self.keep_isolated;
+        options.keep_degenerate = self.keep_degenerate;
+        options.keep_order = self.keep_order;
         options
     }
 
@@ -91,7 +95,7 @@ fn warn_about(name: &str, repair: &RepairReport, ui: &Ui) {
     }
     if repeated_vertices > 0 {
         let vertices = counted(repeated_vertices, "vertex", "vertices");
-        ui.warn(name, &format!("{vertices} added to cut the mesh where it is not manifold"));
+        ui.detail(name, &format!("{vertices} repeated to cut the mesh where it is not manifold"));
     }
 }
 

@@ -1,11 +1,12 @@
 //! From bytes to meshes, coarse to fine.
 
+pub(crate) mod assemble;
 mod frame;
 mod level_mesh;
 mod passes;
 mod push;
 mod running;
 
-pub use frame::{PassInfo, PassKind, StreamInfo};
+pub use frame::{PassInfo, PassKind, StreamInfo, TrailingInfo, TrailingKind};
 pub use level_mesh::LevelMesh;
 pub use push::{DecodeOptions, Decoder, Step, Update, decode};

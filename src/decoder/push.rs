@@ -1,9 +1,11 @@
 //! The push decoder: bytes in, refined meshes out.
 
+use super::assemble::{self, Extras};
 use super::frame::{self, Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
 use super::level_mesh::LevelMesh;
 use super::passes::{self, PassDecoder};
 use super::running::Running;
+use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::{Grid, Provenance};
 use crate::limits::Limits;
@@ -61,6 +63,7 @@ pub struct Decoder {
     frames: FrameReader,
     grid: Option<Grid>,
     provenance: Option<Provenance>,
+    announced: Option<Announced>,
     info: Option<StreamInfo>,
     /// Passes done.
     done: usize,
@@ -70,6 +73,7 @@ pub struct Decoder {
     /// Kinds of the chunks that must come before the next pass, or behind the last: what belongs to the
     /// passes that are done.
     awaited: VecDeque<u8>,
+    extras: Extras,
     work_done: u64,
     failed: bool,
 }
@@ -88,11 +92,13 @@ impl Decoder {
             frames: FrameReader::new(),
             grid: None,
             provenance: None,
+            announced: None,
             info: None,
             done: 0,
             passes: PassDecoder::new(),
             running: None,
             awaited: VecDeque::new(),
+            extras: Extras::default(),
             work_done: 0,
             failed: false,
         }
@@ -221,11 +227,21 @@ impl Decoder {
                 }
                 (kind::PASSES, Some(grid)) => {
                     let passes = frame::list_passes(payload, grid, self.frames.position(), &[]);
-                    let passes = passes.map_err(|e| malformed(e.0))?;
-                    self.info = Some(StreamInfo { grid: *grid, provenance: self.provenance, passes });
+                    let mut passes = passes.map_err(|e| malformed(e.0))?;
+                    let announced = self.announced.take().unwrap_or_default();
+                    let trailing = frame::add_announced(&mut passes, &announced);
+                    let trailing = trailing.map_err(|e| malformed(e.0))?;
+                    self.info =
+                        Some(StreamInfo { grid: *grid, provenance: self.provenance, passes, trailing });
                 }
                 (kind::PROVENANCE, _) => self.provenance = Provenance::read(payload),
-                (kind::HEADER | kind::PASSES | kind::BASE | kind::SPLIT | kind::REFINE, _) => {
+                (kind::ANNOUNCED, _) if self.announced.is_none() => {
+                    self.announced = Some(Announced::read(payload).ok_or(malformed("the announced chunks"))?);
+                }
+                (
+                    kind::ANNOUNCED | kind::HEADER | kind::PASSES | kind::BASE | kind::SPLIT | kind::REFINE,
+                    _,
+                ) => {
                     return Err(out_of_order(&chunk));
                 }
                 _ => skip(&chunk)?,
@@ -267,11 +283,53 @@ impl Decoder {
 
     /// Notes which chunks belong to the pass that has just been done, and, if it was the last one of the stream,
     /// which follow that.
-    fn await_companions(&mut self) {}
+    fn await_companions(&mut self) {
+        let Some(info) = &self.info else { return };
+        if info.passes.get(self.done - 1).is_some_and(|pass| pass.glue_bytes > 0) {
+            self.awaited.push_back(kind::GLUE);
+        }
+        if self.done == info.passes.len() {
+            self.awaited.extend(info.trailing.iter().map(|trailing| trailing.code));
+        }
+    }
 
     /// Takes a chunk that was awaited; false if it is half done.
-    fn begin_companion(&mut self, chunk: Chunk, _work: &mut Work) -> Result<bool, DecodeError> {
-        Err(out_of_order(&chunk))
+    fn begin_companion(&mut self, chunk: Chunk, work: &mut Work) -> Result<bool, DecodeError> {
+        let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
+        let (Some(info), Some(pass)) = (&self.info, self.last_pass()) else {
+            return Err(out_of_order(&chunk));
+        };
+        let payload = self.frames.payload(&chunk);
+        let size = frame::frame_size(payload.len() as u32);
+        let announced = match chunk.kind {
+            kind::GLUE => pass.glue_bytes,
+            kind => info.trailing.iter().find(|t| t.code == kind).map_or(0, |t| t.bytes),
+        };
+        if size != announced {
+            return Err(malformed("a chunk differs from its announcement"));
+        }
+        let buffered = self.frames.buffered() as u64 + passes::memory_for(pass);
+        let mesh = &self.passes.mesh;
+        let grid = &info.grid;
+        match chunk.kind {
+            kind::GLUE => assemble::read_glue(&mut self.extras, mesh, payload, &self.limits, buffered),
+            kind::LOOSE => {
+                assemble::read_loose(&mut self.extras, mesh, grid, payload, &self.limits, buffered)
+            }
+            kind::EXACT => {
+                assemble::read_exact(&mut self.extras, mesh, grid, payload, &self.limits, buffered)
+            }
+            kind::ORDER => assemble::read_order(&mut self.extras, mesh, payload, &self.limits, buffered),
+            _ => Ok(()),
+        }
+        .map_err(|e| e.at(chunk.offset))?;
+        work.sweep(mesh.positions.len() + mesh.surface.triangles.len());
+        Ok(true)
+    }
+
+    /// The pass that was done last.
+    fn last_pass(&self) -> Option<&PassInfo> {
+        self.info.as_ref()?.passes.get(self.done.checked_sub(1)?)
     }
 
     /// The pass that is decoded next, unless the stream or the wanted level is complete.
@@ -296,7 +354,7 @@ impl Decoder {
             None => (&mesh.positions[..], &mesh.surface.triangles[..]),
         };
         let (precision, level) = (pass.precision, pass.level);
-        Some(LevelMesh { cells, triangles, grid: &info.grid, precision, level })
+        Some(LevelMesh { cells, triangles, grid: &info.grid, precision, level, extras: &self.extras })
     }
 
     /// The mesh so far, with what has arrived of the next pass: vertices whose bytes are missing stay

@@ -7,6 +7,7 @@ use crate::descriptors;
 use crate::mesh::Surface;
 use crate::partition::Geometry;
 use crate::simplify::LevelRecord;
+use bitvec::vec::BitVec;
 
 /// Share of an encoder's time that goes into the analysis.
 pub(super) const ANALYSIS_SHARE: f64 = 0.6;
@@ -29,10 +30,11 @@ pub(super) struct Hierarchy {
 }
 
 /// Goes down from `surface`, whose vertices have the places `cells`. Nothing else is looked at, so that a
-/// decoded mesh gives the same levels.
+/// decoded mesh gives the same levels. The vertices `glued` are in all of them.
 pub(super) fn analyse(
     surface: Surface,
     cells: &[[i32; 3]],
+    glued: BitVec,
     options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Hierarchy {
@@ -44,7 +46,7 @@ pub(super) fn analyse(
     let mean_edge = descriptors::mean_edge_length(&mesh);
     let (positions, _) = mesh.into_parts();
     let geometry = Geometry { grid: cells, positions: &positions };
-    let mut descent = Descent::new(surface, geometry, mean_edge, settings(options));
+    let mut descent = Descent::new(surface, geometry, mean_edge, settings(options), glued);
     let squared_step = steps_per_unit.powi(2);
     let mut records = Vec::new();
     let mut mean_edges = vec![descent.level().mean_edge(cells)];

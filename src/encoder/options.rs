@@ -26,6 +26,16 @@ pub struct EncodeOptions {
     /// Grid steps to the mean edge of a level, from which its precision follows; `None` follows the
     /// error of each level instead, which makes better prefixes. Default `None`.
     pub steps_per_edge: Option<f64>,
+    /// Keep vertices that no triangle has. Default false: they are dropped and counted.
+    pub keep_isolated: bool,
+    /// Keep triangles that name a vertex twice, and the vertices they name. Default false: they are dropped
+    /// and counted.
+    pub keep_degenerate: bool,
+    /// Keep all coordinates bit for bit, behind the last pass. Default false.
+    pub lossless: bool,
+    /// Keep the order of vertices and triangles and the first corner of each, behind the last pass. Default
+    /// false.
+    pub keep_order: bool,
 }
 
 impl Default for EncodeOptions {
@@ -39,6 +49,10 @@ impl Default for EncodeOptions {
             partition: Partition::default(),
             optimize: Optimize::default(),
             steps_per_edge: None,
+            keep_isolated: false,
+            keep_degenerate: false,
+            lossless: false,
+            keep_order: false,
         }
     }
 }

@@ -8,7 +8,12 @@
 pub(crate) mod base;
 pub(crate) mod connectivity;
 pub(crate) mod coordinates;
+pub(crate) mod exact;
+pub(crate) mod glue;
 pub(crate) mod guess;
+pub(crate) mod loose;
+pub(crate) mod numbers;
+pub(crate) mod order;
 pub(crate) mod patch;
 mod polygon;
 pub(crate) mod refine;
