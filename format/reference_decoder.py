@@ -215,7 +215,7 @@ class Mesh:
             self.valence.append(len(corners) + (not closed))
 
     def checksum(self):
-        """Section 9."""
+        """Section 9.2."""
         numbers = [len(self.cell), len(self.triangle), self.precision]
         for triple in self.cell + self.triangle:
             numbers += triple
@@ -1163,6 +1163,238 @@ def refine(coder, models, mixed, mesh):
             g.learn(cell[g.axis])
 
 
+# 6.5 Numbers and 7.6 to 7.9: what stands beside the passes
+
+
+class Numbers:
+    def __init__(self):
+        self.bits = Plain()
+
+    def code(self, coder, context):
+        digits, n = 0, 1
+        while digits < 47 and self.bits.code(coder, (context, digits)):
+            digits += 1
+        for k in range(digits):
+            where = (context, 48 + (8 * digits | n % (1 << k) | 1 << k))
+            n = 2 * n + (self.bits.code(coder, where) if k < 3 else coder.raw(1))
+        return n - 1
+
+    def signed(self, coder, context):
+        n = self.code(coder, context)
+        return -n if n > 0 and self.bits.code(coder, (context, 432)) else n
+
+
+class Glue:
+    """7.6; root holds the first vertex that is the same."""
+
+    def __init__(self):
+        self.glued, self.picks, self.root = Plain(), Numbers(), []
+
+    def decode(self, payload, mesh):
+        coder, first = RangeDecoder(payload), len(self.root)
+        lists = collections.defaultdict(list)
+        for v, cell in enumerate(mesh.cell):
+            there = lists[tuple(cell)]
+            if v >= first:
+                root = v
+                if there:
+                    corners, closed = mesh.fan(mesh.corner_of[v])
+                    near = {mesh.vertex(turn(c)) for c in corners for turn in (next_, prev)}
+                    known = max([1 + (self.root[u] != u) for u in near if u < v], default=0)
+                    if self.glued.code(coder, (min(len(there), 3) - 1) * 6 + 3 * (not closed) + known):
+                        back = self.picks.code(coder, 0) if len(there) > 1 else 0
+                        root = there[max(len(there) - 1 - back, 0)]
+                self.root.append(root)
+            if self.root[v] == v:
+                there.append(v)
+        coder.check_end()
+
+
+class Whole:
+    """Section 9.1: cells and triangles of joined and loose vertices, exact positions, order."""
+
+    def __init__(self, grid, mesh, root):
+        self.grid, self.mesh = grid, mesh
+        self.cell, place = [], []
+        for v, cell in enumerate(mesh.cell):
+            if v < len(root) and root[v] != v:
+                place.append(place[root[v]])
+            else:
+                place.append(len(self.cell))
+                self.cell.append(list(cell))
+        joined = ([place[v] for v in t] for t in mesh.triangle)
+        self.triangle = [t for t in joined if len(set(t)) == 3]
+        self.position = self.order = None
+
+    def loose(self, payload):
+        coder, counts, ways, links = RangeDecoder(payload), Numbers(), Numbers(), Numbers()
+        vertices, faces = counts.code(coder, 0), counts.code(coder, 1)
+        require(vertices + faces <= 64 * (len(payload) + 1), "more is loose than the bytes could hold")
+        cell, first = [0, 0, 0], 0
+        for _ in range(vertices):
+            cell = [cell[a] + ways.signed(coder, a) for a in range(3)]
+            require(all(0 <= c < 1 << self.grid[0] for c in cell), "a loose vertex off the grid")
+            self.cell.append(cell)
+        for _ in range(faces):
+            first += links.signed(coder, 0)
+            second = first + links.signed(coder, 1)
+            face = [first, second, second + links.signed(coder, 2)]
+            require(all(0 <= v < len(self.cell) for v in face), "a loose face names no vertex")
+            self.triangle.append(face)
+        coder.check_end()
+
+    def exact(self, payload):
+        require(len(payload) >= 4 and payload[0] < 2, "the kinds of exact numbers")
+        axes = [ExactAxis(payload[0] == 1, code) for code in payload[1:4]]
+        coder = RangeDecoder(payload[4:])
+        precision, _, side = self.grid
+        half = side / ((1 << precision) - 1) * 0.5
+        self.position = []
+        for cell in self.cell:
+            middle = position(self.grid, cell, precision)
+            self.position.append([axes[a].decode(coder, cell[a], middle[a] - half, middle[a] + half) for a in range(3)])
+            coder.check_end()
+
+    def ordered(self, payload):
+        coder, at = RangeDecoder(payload), [[] for _ in self.cell]
+        for f, t in enumerate(self.triangle):
+            for v in t:
+                at[v].append(f)
+        vertices = OrderPicker(len(self.cell))
+        for _ in self.cell:
+            vertices.candidates = []
+            for v in vertices.order[: -7 : -1]:
+                for f in at[v][:24]:
+                    k = self.triangle[f].index(v)
+                    vertices.consider(self.triangle[f][(k + 1) % 3])
+                    vertices.consider(self.triangle[f][(k + 2) % 3])
+            vertices.pick(coder)
+        place = {v: i for i, v in enumerate(vertices.order)}
+        faces, turns, corners, turned, low, passed = OrderPicker(len(self.triangle)), Numbers(), [], 3, 0, 0
+        for _ in self.triangle:
+            faces.candidates = []
+            for c in corners[: -7 : -1]:
+                for k in (2, 1, 0):
+                    for f in at[self.triangle[c // 3][(c + k) % 3]][:24]:
+                        faces.consider(f)
+            while low < len(vertices.order):
+                there = at[vertices.order[low]]
+                while passed < len(there) and there[passed] in faces.picked:
+                    passed += 1
+                if passed < len(there):
+                    for f in there[passed : passed + 24]:
+                        faces.consider(f)
+                    break
+                low, passed = low + 1, 0
+            f = faces.pick(coder)
+            lowest = min(range(3), key=lambda k: place[self.triangle[f][k]])
+            turned = turns.code(coder, turned) % 3
+            corners.append(3 * f + (lowest + turned) % 3)
+        self.order = vertices.order, place, corners
+
+    def checksum(self):
+        positions = self.position or [position(self.grid, cell, self.mesh.precision) for cell in self.cell]
+        triangles = self.triangle
+        if self.order:
+            order, place, corners = self.order
+            positions = [positions[v] for v in order]
+            triangles = [[place[triangles[c // 3][(c + k) % 3]] for k in range(3)] for c in corners]
+        data = struct.pack("<2I", len(positions), len(triangles))
+        data += b"".join(struct.pack("<3d", *p) for p in positions)
+        return zlib.crc32(data + b"".join(struct.pack("<3I", *t) for t in triangles))
+
+
+class ExactAxis:
+    def __init__(self, wide, code):
+        require(code <= 16 or 32 <= code <= 92, "the kinds of exact numbers")
+        self.wide, self.width = wide, 64 if wide else 32
+        self.steps = None if code == 0 else 10.0 ** (code - 1) if code < 32 else 2.0 ** (code - 32)
+        self.last, self.history = {}, 0
+        self.repeated, self.off, self.small = Plain(), Plain(), Plain()
+
+    def rounded(self, x):
+        return x if self.wide else f32(x)
+
+    def number(self, key):
+        if self.steps:
+            return self.rounded((key - (1 << 63)) / self.steps)
+        sign = 1 << self.width - 1
+        bits = key - sign if key & sign else 2 * sign - 1 - key
+        return struct.unpack(*(("<d", struct.pack("<Q", bits)) if self.wide else ("<f", struct.pack("<I", bits))))[0]
+
+    def key(self, x):
+        bits = struct.unpack("<Q", struct.pack("<d", x))[0] if self.wide else struct.unpack("<I", struct.pack("<f", f32(x)))[0]
+        sign = 1 << self.width - 1
+        return 2 * sign - 1 - bits if bits & sign else bits + sign
+
+    def range(self, low, high):
+        if self.steps:
+            whole = lambda x: int(clamp(x, -(2.0**53), 2.0**53))
+            scaled_low, scaled_high = low * self.steps, high * self.steps
+            i, j = whole(scaled_low), whole(scaled_high)
+            i -= low < 0 and i > scaled_low
+            j += high > 0 and j < scaled_high
+            return i + (1 << 63), max(i, j) + (1 << 63)
+        return max(self.key(low) - 1, 0), min(self.key(high) + 1, (1 << self.width) - 1)
+
+    def share(self, low, middle, high):
+        if self.steps is None and high - low > 16:
+            x_low, x_middle, x_high = self.number(low), self.number(middle), self.number(high)
+            by_width = quotient(x_high - x_middle, x_high - x_low)
+            if 0 < by_width < 1:
+                return by_width
+        return float(high - middle) / (float(high - low) + 1)
+
+    def decode(self, coder, cell, low, high):
+        if cell in self.last:
+            hit = self.repeated.code(coder, self.history)
+            self.history = (2 * self.history + hit) % 8
+            if hit:
+                return self.number(self.last[cell])
+        low, high = self.range(low, high)
+        if self.off.code(coder, 0):
+            x = -0.0
+            if not self.off.code(coder, 1):
+                bits = coder.raw(32) << 32 | coder.raw(32) if self.wide else coder.raw(32)
+                x = struct.unpack(*(("<d", struct.pack("<Q", bits)) if self.wide else ("<f", struct.pack("<I", bits))))[0]
+        else:
+            size, node = high - low, 1
+            while low < high:
+                middle = low + (high - low) // 2
+                if size < 32:
+                    bit = self.small.code(coder, 32 * size + node)
+                else:
+                    bit = coder.bit(clamp(int(self.share(low, middle, high) * 65536), 16, 65520))
+                low, high = (middle + 1, high) if bit else (low, middle)
+                node = 2 * node + bit
+            self.last[cell] = low
+            x = self.number(low)
+        require(math.isfinite(x), "a coordinate that is no number")
+        return x
+
+
+class OrderPicker:
+    def __init__(self, count):
+        self.count, self.order, self.picked, self.candidates = count, [], set(), []
+        self.numbers, self.history, self.last = Numbers(), 0, -1
+
+    def consider(self, n):
+        if n not in self.picked and n not in self.candidates and len(self.candidates) < 24:
+            self.candidates.append(n)
+
+    def pick(self, coder):
+        rank = self.numbers.code(coder, self.history)
+        self.history = (2 * self.history + (rank > 0)) % 4
+        require(rank <= len(self.candidates), "an order that is none")
+        n = self.candidates[rank - 1] if rank else self.last + self.numbers.signed(coder, 4)
+        require(0 <= n < self.count and n not in self.picked, "an order that is none")
+        coder.check_end()
+        self.last = n
+        self.order.append(n)
+        self.picked.add(n)
+        return n
+
+
 # 3 Framing and 4 header chunks
 
 
@@ -1249,6 +1481,31 @@ class Bits:
         return len(rest) < 8 and not any(rest)
 
 
+def position(grid, cell, precision):
+    full, origin, side = grid
+    hidden = full - precision
+    fine = [c * (1 << hidden) + ((1 << hidden) - 1) * 0.5 for c in cell]
+    return [o + f / ((1 << full) - 1) * side for o, f in zip(origin, fine)]
+
+
+def read_announced(payload):
+    """Bytes of the glue behind passes, and kinds and bytes of what follows the last."""
+    reader = Reader(payload)
+    glue, trailing = {}, []
+    count = reader.varint()
+    require(count <= 4097, "the announced chunks")
+    for _ in range(count):
+        pass_ = reader.varint()
+        require(all(pass_ > other for other in glue), "the announced chunks")
+        glue[pass_] = reader.varint()
+    while not reader.is_empty():
+        kind = chr(reader.u8())
+        known = kind in "pdatg" or "A" <= kind <= "Z" or kind in [k for k, _ in trailing]
+        require(not known and len(trailing) < 16, "the announced chunks")
+        trailing.append((kind, reader.varint()))
+    return glue, trailing
+
+
 def read_table(payload, grid_precision):
     """Rows of kind, vertices, faces, bytes; and the precision of the base mesh."""
     bits = Bits(payload)
@@ -1287,20 +1544,33 @@ def read_table(payload, grid_precision):
 
 
 def decode(stream):
-    """Yields kind, level and mesh after each pass."""
-    grid = rows = mesh = None
+    """Yields kind, level and mesh after each pass, and in the end the whole mesh if there is more to it."""
+    grid = rows = mesh = announced = None
+    glue, awaited, whole = Glue(), [], None
     level_, done = 0, 0
     connectivity, coordinates, refinement = ConnectivityModels(), (GuessModels(), Residuals()), (GuessModels(), Mixed(4, 0.4, 250))
     ahead = []
     for kind, payload in chunks(stream, ahead):
-        if kind == "H":
+        if awaited and kind == awaited[0][0]:
+            require(len(payload) == awaited.pop(0)[1], "a chunk differs from its announcement")
+            if kind == "g":
+                glue.decode(payload, mesh)
+            elif kind in "ixo":
+                whole = whole or Whole(grid, mesh, glue.root)
+                {"i": whole.loose, "x": whole.exact, "o": whole.ordered}[kind](payload)
+        elif kind == "t" and rows is None:
+            require(announced is None, "a chunk out of order")
+            announced = read_announced(payload)
+        elif kind == "H":
             require(grid is None, "a chunk out of order")
             grid = read_grid(payload)
         elif kind == "L":
             require(grid and rows is None, "a chunk out of order")
             rows, precision = read_table(payload, grid[0])
             ahead.extend(rows)
+            require(all(i < len(rows) for i in (announced or ({}, []))[0]), "glue behind no pass")
         elif kind in "BSR":
+            require(rows is not None and not awaited, "a chunk out of order")
             _, vertices, faces, _ = rows[done]
             coder = RangeDecoder(payload)
             if kind == "B":
@@ -1318,16 +1588,22 @@ def decode(stream):
             coder.check_end()
             done += 1
             yield {"B": "base", "S": "split", "R": "refine"}[kind], level_, mesh
-            if done == len(rows):
-                return
+            if announced:
+                awaited = [("g", announced[0][done - 1])] if done - 1 in announced[0] else []
+                awaited += announced[1] if done == len(rows) else []
         else:
             require(not "A" <= kind <= "Z", "unsupported chunk %r" % kind)
+        if rows and done == len(rows) and not awaited:
+            if announced:
+                yield "whole", level_, whole or Whole(grid, mesh, glue.root)
+            return
 
 
 def lines_of(path):
     for i, (kind, level_, mesh) in enumerate(decode(path.read_bytes())):
+        precision = (mesh.mesh if kind == "whole" else mesh).precision
         counts = len(mesh.cell), len(mesh.triangle)
-        yield "%s %d %s %d %d %d %d %08x" % (path.name, i, kind, level_, mesh.precision, *counts, mesh.checksum())
+        yield "%s %d %s %d %d %d %d %08x" % (path.name, i, kind, level_, precision, *counts, mesh.checksum())
 
 
 def main():

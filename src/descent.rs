@@ -7,6 +7,7 @@ use crate::partition::{Geometry, Optimize, Partition, remove_level};
 use crate::simplify::canonical::Anchors;
 use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, Seams, ShrinkingSurface};
+use bitvec::vec::BitVec;
 
 /// Most levels, whatever the wish.
 pub(crate) const MAX_LEVELS: u32 = 128;
@@ -48,9 +49,16 @@ pub(crate) struct Descent<'a> {
 }
 
 impl<'a> Descent<'a> {
-    pub(crate) fn new(surface: Surface, geometry: Geometry<'a>, mean_edge: f64, settings: Settings) -> Self {
+    /// Goes down from `surface`; the vertices `glued` always stay.
+    pub(crate) fn new(
+        surface: Surface,
+        geometry: Geometry<'a>,
+        mean_edge: f64,
+        settings: Settings,
+        glued: BitVec,
+    ) -> Self {
         let memory = ErrorMemory::new(&surface, geometry.positions);
-        let anchors = Anchors::new(&surface);
+        let anchors = Anchors::new(&surface, glued);
         let shrinking = ShrinkingSurface::new(surface);
         let level = Level::collect(&shrinking);
         let (features, depth, is_over, seams) = (None, 0, false, Seams::default());

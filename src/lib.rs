@@ -38,7 +38,8 @@ mod scene;
 mod simplify;
 
 pub use decoder::{
-    AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Step, StreamInfo, Update, decode,
+    AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Step, StreamInfo, TrailingInfo,
+    TrailingKind, Update, decode,
 };
 #[cfg(feature = "encoder")]
 pub use encoder::{EncodeOptions, Encoded, Progress, encode, encode_with_attributes, encode_with_progress};

@@ -148,7 +148,8 @@ pub(crate) fn remove_level(
     let thinning = Thinning::of(optimize, is_fine);
     match partition {
         Partition::Algorithm1 => {
-            let order = by_score(vertices, scores);
+            let mut order = by_score(vertices, scores);
+            order.retain(|&v| !anchors.is_glued(v));
             remove_in_order(surface, geometry, &order, Some(memory), seams)
         }
         Partition::Balanced => {

@@ -59,7 +59,24 @@ fn lines_of(name: &str, stream: &[u8]) -> String {
         pass += 1;
     }
     assert!(decoder.is_complete(), "{name} is not complete");
+    if chunks::split(stream).iter().any(|chunk| chunk.kind == b't') {
+        let mesh = decoder.mesh().unwrap();
+        let (level, precision, whole) = (mesh.level(), mesh.precision(), mesh.to_tri_mesh());
+        let (vertices, faces) = (whole.num_vertices(), whole.num_triangles());
+        let checksum = checksum_of_whole(&whole);
+        writeln!(lines, "{name} {pass} whole {level} {precision} {vertices} {faces} {checksum:08x}").unwrap();
+    }
     lines
+}
+
+/// Section 9.2: counts, positions, triangles.
+fn checksum_of_whole(mesh: &lwc::TriMesh) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(&(mesh.num_vertices() as u32).to_le_bytes());
+    hasher.update(&(mesh.num_triangles() as u32).to_le_bytes());
+    mesh.positions().iter().flatten().for_each(|x| hasher.update(&x.to_le_bytes()));
+    mesh.triangles().iter().flatten().for_each(|v| hasher.update(&v.to_le_bytes()));
+    hasher.finalize()
 }
 
 #[test]
@@ -97,6 +114,7 @@ fn the_golden_streams_cover_the_syntax() {
             let touched = if row.head == [0] { info.passes()[i].vertices } else { row.head[0] };
             i > 0 && row.size > 0 && row.size == touched.div_ceil(64) - 1
         };
+        let exact = |head: &[u8]| chunks.iter().any(|c| c.kind == b'x' && c.payload.starts_with(head));
         let last_split = kinds.iter().rposition(|&k| k == PassKind::Split);
         for (feature, is_there) in [
             ("narrow header", payload(b'H')[0] & 1 == 0),
@@ -116,7 +134,15 @@ fn the_golden_streams_cover_the_syntax() {
             ),
             ("refinement last", kinds.last() == Some(&PassKind::Refine)),
             ("padding", rows.iter().enumerate().any(|(i, row)| is_padded(i, row))),
-            ("unknown chunk", chunks.iter().any(|c| !b"HpLBSR".contains(&c.kind))),
+            ("unknown chunk", chunks.iter().any(|c| !b"HpLBSRtgixo".contains(&c.kind))),
+            ("glue in the base mesh", chunks.iter().filter(|c| c.kind == b'g').count() == 1),
+            ("glue in splits", chunks.iter().filter(|c| c.kind == b'g').count() > 1),
+            ("loose", chunks.iter().any(|c| c.kind == b'i')),
+            ("exact floats", exact(&[0, 0])),
+            ("exact doubles", exact(&[1, 0])),
+            ("exact decimals", chunks.iter().any(|c| c.kind == b'x' && (1..32).contains(&c.payload[1]))),
+            ("exact binary fractions", chunks.iter().any(|c| c.kind == b'x' && c.payload[1] >= 32)),
+            ("order", chunks.iter().any(|c| c.kind == b'o')),
         ] {
             *seen.entry(feature).or_default() |= is_there;
         }
@@ -215,7 +241,44 @@ mod make {
                 }),
             ),
             ("unknown-chunks", commented),
+            ("exact-floats", {
+                let narrow = map_positions(noisy(sphere(1), 3, 0.05), |p| p.map(|x| f64::from(x as f32)));
+                stream(&narrow, everything)
+            }),
+            ("exact-doubles", stream(&noisy(single_and_loose(), 4, 0.01), everything)),
+            ("exact-decimals", {
+                let rounded =
+                    map_positions(noisy(grid(7, 7, bumpy), 5, 0.1), |p| p.map(|x| (x * 1e3).round() / 1e3));
+                stream(&rounded, |o| o.lossless = true)
+            }),
+            ("exact-fractions", {
+                let rounded = map_positions(noisy(grid(7, 7, bumpy), 5, 0.1), |p| {
+                    p.map(|x| (x * 1e3).round() / 1024.0)
+                });
+                stream(&rounded, |o| o.lossless = true)
+            }),
+            ("turned-faces", {
+                let (positions, mut triangles) = noisy(grid(12, 12, bumpy), 6, 0.02).into_parts();
+                triangles.iter_mut().skip(60).step_by(2).for_each(|t| t.swap(0, 1));
+                stream(&build(positions, triangles), |o| o.quantization = 8)
+            }),
         ]
+    }
+
+    fn everything(options: &mut EncodeOptions) {
+        options.keep_isolated = true;
+        options.keep_degenerate = true;
+        options.lossless = true;
+        options.keep_order = true;
+    }
+
+    /// A tetrahedron, vertices without triangles, and triangles that name a vertex twice.
+    fn single_and_loose() -> TriMesh {
+        let (mut positions, mut triangles) = tetrahedron().into_parts();
+        positions.extend([[5.0, -0.0, 1e-310], [5.0, 0.0, 0.0], [0.25, 3.0, 1.0]]);
+        triangles.insert(1, [2, 2, 5]);
+        triangles.extend([[6, 6, 6], [0, 1, 0]]);
+        build(positions, triangles)
     }
 
     /// A flat grid whose vertices have zeros in all low bits, so that refinements cost nearly nothing

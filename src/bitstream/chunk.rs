@@ -36,6 +36,21 @@ pub(crate) mod kind {
     /// Declarations of attributes, and their values behind each pass.
     pub(crate) const DECLARATIONS: u8 = b'd';
     pub(crate) const ATTRIBUTES: u8 = b'a';
+    /// Announces the chunks below.
+    pub(crate) const ANNOUNCED: u8 = b't';
+    /// Vertices that were cut apart.
+    pub(crate) const GLUE: u8 = b'g';
+    /// Isolated vertices and degenerate faces.
+    pub(crate) const LOOSE: u8 = b'i';
+    /// Coordinates bit for bit.
+    pub(crate) const EXACT: u8 = b'x';
+    /// Order of the file.
+    pub(crate) const ORDER: u8 = b'o';
+
+    /// True if a known kind has its place in front of a pass or directly behind one.
+    pub(crate) fn is_known_elsewhere(kind: u8) -> bool {
+        matches!(kind, PROVENANCE | DECLARATIONS | ATTRIBUTES | ANNOUNCED | GLUE)
+    }
 
     /// True if the chunk is a pass: the table of passes knows its length.
     pub(crate) fn is_pass(kind: u8) -> bool {

@@ -1,5 +1,6 @@
 //! Bytes, chunks, and the entropy coder. Knows no mesh.
 
+pub(crate) mod announced;
 pub(crate) mod bits;
 pub(crate) mod bytes;
 pub(crate) mod chunk;

@@ -117,6 +117,18 @@ pub struct Encode {
     /// Keep positions and triangles only.
     #[arg(long)]
     pub no_attributes: bool,
+    /// Keep every coordinate bit for bit, float or double, behind the last pass.
+    #[arg(long)]
+    pub lossless: bool,
+    /// Keep vertices without faces. They are dropped and counted without it.
+    #[arg(long)]
+    pub keep_isolated: bool,
+    /// Keep faces that name a vertex twice. They are dropped and counted without it.
+    #[arg(long)]
+    pub keep_degenerate: bool,
+    /// Keep the order of vertices and faces, and the first corner of each face; `lwc info` shows the price.
+    #[arg(long)]
+    pub keep_order: bool,
     /// Join the meshes of a scene (.glb .gltf) into one. They are joined without it too, with a note: streams
     /// of several meshes are not there yet.
     #[arg(long)]

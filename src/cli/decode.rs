@@ -80,10 +80,10 @@ fn sound_mesh(
     name: &str,
     ui: &Ui,
 ) -> Result<(TriMesh, Attributes), DecodeError> {
-    match (error, decoder.mesh()) {
-        (Some(error), Some(mesh)) if args.salvage => {
+    match (error, decoder.to_tri_mesh_with_attributes()) {
+        (Some(error), Some(sound)) if args.salvage => {
             ui.warn(name, &format!("{error}; salvaged {}", reached(decoder).unwrap_or_default()));
-            Ok((mesh.to_tri_mesh(), decoder.attributes()))
+            Ok(sound)
         }
         (Some(error), _) => Err(error),
         (None, _) => {

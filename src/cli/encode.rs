@@ -29,6 +29,10 @@ impl Encode {
         options.uv_bits = self.uv_bits;
         options.color_bits = self.color_bits;
         options.generic_bits = self.generic_bits;
+        options.lossless = self.lossless;
+        options.keep_isolated = self.keep_isolated;
+        options.keep_degenerate = self.keep_degenerate;
+        options.keep_order = self.keep_order;
         options
     }
 
@@ -108,7 +112,7 @@ fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
     }
     if repeated_vertices > 0 {
         let vertices = counted(repeated_vertices, "vertex", "vertices");
-        ui.warn(name, &format!("{vertices} added to cut the mesh where it is not manifold"));
+        ui.detail(name, &format!("{vertices} repeated to cut the mesh where it is not manifold"));
     }
 }
 

@@ -1,6 +1,7 @@
 //! From bytes to chunks: what a stream announces, and where its passes begin.
 
 use crate::DecodeError;
+use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, Frame, NextPass};
 use crate::bitstream::header::{Action, Grid, Pass, Provenance};
 use crate::bitstream::pass_table::{self, BadTable};
@@ -15,6 +16,7 @@ pub struct StreamInfo {
     pub(super) provenance: Option<Provenance>,
     pub(super) passes: Vec<PassInfo>,
     pub(super) attributes: Vec<AttributeInfo>,
+    pub(super) trailing: Vec<TrailingInfo>,
 }
 
 /// What a stream says of one of its attributes.
@@ -49,6 +51,53 @@ impl AttributeInfo {
             },
         }
     }
+}
+
+/// What a chunk behind the last pass holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TrailingKind {
+    /// Vertices without triangles and triangles that name a vertex twice.
+    Loose,
+    /// The coordinates bit for bit.
+    Exact,
+    /// The order of vertices and triangles.
+    Order,
+    /// Something that a newer encoder wrote.
+    Unknown,
+}
+
+impl TrailingKind {
+    fn new(kind: u8) -> Self {
+        match kind {
+            chunk::kind::LOOSE => Self::Loose,
+            chunk::kind::EXACT => Self::Exact,
+            chunk::kind::ORDER => Self::Order,
+            _ => Self::Unknown,
+        }
+    }
+
+    /// Name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Loose => "loose",
+            Self::Exact => "exact",
+            Self::Order => "order",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// A chunk behind the last pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TrailingInfo {
+    /// What is in it.
+    pub kind: TrailingKind,
+    /// Its bytes: frame, payload and checksum.
+    pub bytes: u64,
+    /// Bytes of the stream up to its end.
+    pub end: u64,
+    pub(super) code: u8,
 }
 
 /// Kind of a pass.
@@ -91,6 +140,8 @@ pub struct PassInfo {
     pub bytes: u64,
     /// Bytes of the chunk with the values of attributes that follows it, 0 without one.
     pub attribute_bytes: u64,
+    /// Bytes of the chunk behind that which joins vertices again that were cut apart, 0 without one.
+    pub glue_bytes: u64,
     /// Bytes of the stream up to the end of the pass and of the chunks that belong to it.
     pub end: u64,
     pub(super) row: Pass,
@@ -141,9 +192,15 @@ impl StreamInfo {
         &self.passes
     }
 
-    /// Bytes of the whole stream, skippable chunks between passes not counted.
+    /// What follows the last pass, in order.
+    pub fn trailing(&self) -> &[TrailingInfo] {
+        &self.trailing
+    }
+
+    /// Bytes of the whole stream, skippable chunks between passes that it does not announce not counted.
     pub fn total_bytes(&self) -> u64 {
-        self.passes.last().map_or(0, |p| p.end)
+        let last_pass = self.passes.last().map(|p| p.end);
+        self.trailing.last().map(|t| t.end).or(last_pass).unwrap_or(0)
     }
 
     /// The attributes, in the order of [`Decoder::attributes`](crate::Decoder::attributes).
@@ -301,6 +358,7 @@ pub(super) fn list_passes(
                 faces: row.faces,
                 bytes,
                 attribute_bytes,
+                glue_bytes: 0,
                 end: start + with_companions,
                 row,
             },
@@ -313,6 +371,7 @@ pub(super) fn list_passes(
                 faces: before.faces + row.faces,
                 bytes,
                 attribute_bytes,
+                glue_bytes: 0,
                 end: before.end + with_companions,
                 row,
             },
@@ -320,4 +379,30 @@ pub(super) fn list_passes(
         passes.push(next);
     }
     Ok(passes)
+}
+
+/// Makes room for announced chunks: the glue of the passes, and what follows the last one.
+pub(super) fn add_announced(
+    passes: &mut [PassInfo],
+    announced: &Announced,
+) -> Result<Vec<TrailingInfo>, BadTable> {
+    let mut shift = 0;
+    let mut glue = announced.glue.iter().peekable();
+    for (pass, i) in passes.iter_mut().zip(0..) {
+        if let Some(&(_, bytes)) = glue.next_if(|&&(pass, _)| pass == i) {
+            pass.glue_bytes = chunk::other_size(bytes);
+            shift += pass.glue_bytes;
+        }
+        pass.end += shift;
+    }
+    if glue.peek().is_some() {
+        return Err(BadTable("glue is announced for a pass that is not there"));
+    }
+    let mut end = passes.last().map_or(0, |p| p.end);
+    let place = |&(kind, payload): &(u8, u32)| {
+        let bytes = chunk::other_size(payload);
+        end += bytes;
+        TrailingInfo { kind: TrailingKind::new(kind), bytes, end, code: kind }
+    };
+    Ok(announced.trailing.iter().map(place).collect())
 }

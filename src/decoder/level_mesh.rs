@@ -1,5 +1,6 @@
 //! The mesh a decoder holds, as callers see it.
 
+use super::assemble::{Extras, Joined};
 use crate::TriMesh;
 use crate::bitstream::header::Grid;
 
@@ -11,6 +12,7 @@ pub struct LevelMesh<'a> {
     pub(super) grid: &'a Grid,
     pub(super) precision: u32,
     pub(super) level: u32,
+    pub(super) extras: &'a Extras,
 }
 
 impl<'a> LevelMesh<'a> {
@@ -58,9 +60,24 @@ impl<'a> LevelMesh<'a> {
         (0..self.num_vertices()).map(move |v| view.position(v))
     }
 
-    /// A copy that owns its arrays.
+    /// The mesh that was encoded, as far as this level and the chunks that have come tell: vertices are
+    /// joined where the surface was cut, triangles that have no three vertices then are left out. Behind the
+    /// last pass come loose vertices and faces, exact coordinates and the order of the file, if the stream has
+    /// them.
     pub fn to_tri_mesh(&self) -> TriMesh {
-        TriMesh::from_valid_parts(self.positions().collect(), self.triangles().to_vec())
+        self.extras.assemble(self.grid, self.precision, self.cells, self.triangles)
+    }
+
+    /// The cut surface itself, in model units: a copy that owns its arrays.
+    pub fn to_cut_mesh(&self) -> TriMesh {
+        TriMesh::from_valid_parts(self.positions().collect(), self.triangles.to_vec())
+    }
+
+    /// For each vertex of this cut surface the vertex of the joined one, and the number of those: before
+    /// loose vertices follow and any order is restored, that of [`to_tri_mesh`](Self::to_tri_mesh).
+    pub fn joined_vertices(&self) -> (Vec<u32>, usize) {
+        let joined = Joined::new(&self.extras.roots, self.cells.len());
+        (joined.place, joined.first.len())
     }
 
     /// Checksum of counts, cells and triangles (`format/SPEC.md`, section 9): equal on every

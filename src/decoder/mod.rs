@@ -1,5 +1,6 @@
 //! From bytes to meshes, coarse to fine.
 
+pub(crate) mod assemble;
 mod attributes;
 mod frame;
 mod level_mesh;
@@ -7,6 +8,6 @@ mod passes;
 mod push;
 mod running;
 
-pub use frame::{AttributeInfo, PassInfo, PassKind, StreamInfo};
+pub use frame::{AttributeInfo, PassInfo, PassKind, StreamInfo, TrailingInfo, TrailingKind};
 pub use level_mesh::LevelMesh;
 pub use push::{DecodeOptions, Decoder, Step, Update, decode};

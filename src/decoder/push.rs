@@ -1,11 +1,13 @@
 //! The push decoder: bytes in, refined meshes out.
 
+use super::assemble::{self, Extras};
 use super::attributes::{self, AttributeDecoder};
 use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
 use super::level_mesh::LevelMesh;
 use super::passes::{self, PassDecoder};
 use super::running::Running;
-use crate::bitstream::chunk::kind;
+use crate::bitstream::announced::Announced;
+use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::header::{Header, Provenance};
 use crate::limits::Limits;
 use crate::mesh::Attributes;
@@ -65,6 +67,7 @@ pub struct Decoder {
     frames: FrameReader,
     header: Option<Header>,
     provenance: Option<Provenance>,
+    announced: Option<Announced>,
     info: Option<StreamInfo>,
     /// Passes done.
     done: usize,
@@ -77,6 +80,7 @@ pub struct Decoder {
     attributes: Option<AttributeDecoder>,
     /// A chunk of attributes that is half done.
     running_attributes: Option<Chunk>,
+    extras: Extras,
     work_done: u64,
     failed: bool,
 }
@@ -95,6 +99,7 @@ impl Decoder {
             frames: FrameReader::new(),
             header: None,
             provenance: None,
+            announced: None,
             info: None,
             done: 0,
             passes: PassDecoder::new(),
@@ -102,6 +107,7 @@ impl Decoder {
             awaited: VecDeque::new(),
             attributes: None,
             running_attributes: None,
+            extras: Extras::default(),
             work_done: 0,
             failed: false,
         }
@@ -240,13 +246,16 @@ impl Decoder {
                     let none = Declarations::default();
                     let declared = self.attributes.as_ref().map_or(&none, |a| &a.declarations);
                     let passes = frame::list_passes(payload, grid, self.frames.position(), &declared.bytes);
-                    let passes = passes.map_err(|e| malformed(e.0))?;
+                    let mut passes = passes.map_err(|e| malformed(e.0))?;
                     if self.attributes.is_some() {
                         attributes::check_density(declared, &passes).map_err(malformed)?;
                     }
+                    let announced = self.announced.take().unwrap_or_default();
+                    let trailing = frame::add_announced(&mut passes, &announced);
+                    let trailing = trailing.map_err(|e| malformed(e.0))?;
                     let attributes = declared.list.iter().map(AttributeInfo::of).collect();
                     let (grid, provenance) = (*grid, self.provenance);
-                    self.info = Some(StreamInfo { grid, provenance, passes, attributes });
+                    self.info = Some(StreamInfo { grid, provenance, passes, attributes, trailing });
                 }
                 (kind::DECLARATIONS, _) if self.attributes.is_none() => {
                     let needed = 2 * payload.len() as u64 + self.frames.buffered() as u64;
@@ -257,7 +266,10 @@ impl Decoder {
                 }
                 (kind::DECLARATIONS, _) => return Err(out_of_order(&chunk)),
                 (kind::PROVENANCE, _) => self.provenance = Provenance::read(payload),
-                (kind::HEADER | kind::PASSES, _) => return Err(out_of_order(&chunk)),
+                (kind::ANNOUNCED, _) if self.announced.is_none() => {
+                    self.announced = Some(Announced::read(payload).ok_or(malformed("the announced chunks"))?);
+                }
+                (kind::ANNOUNCED | kind::HEADER | kind::PASSES, _) => return Err(out_of_order(&chunk)),
                 _ => skip(&chunk)?,
             }
         }
@@ -303,10 +315,21 @@ impl Decoder {
             attributes.expect((pass.kind == PassKind::Split).then_some(patches), first);
             self.awaited.push_back(kind::ATTRIBUTES);
         }
+        if pass.glue_bytes > 0 {
+            self.awaited.push_back(kind::GLUE);
+        }
+        if let Some(info) = self.info.as_ref().filter(|info| info.passes.len() == self.done) {
+            self.awaited.extend(info.trailing.iter().map(|trailing| trailing.code));
+        }
     }
 
     /// Takes a chunk that was awaited; false if it is half done.
     fn begin_companion(&mut self, chunk: Chunk, work: &mut Work) -> Result<bool, DecodeError> {
+        if chunk.kind != kind::ATTRIBUTES {
+            self.read_extra(&chunk, work)?;
+            self.awaited.pop_front();
+            return Ok(true);
+        }
         let expected = self
             .done
             .checked_sub(1)
@@ -332,6 +355,40 @@ impl Decoder {
         Ok(is_done)
     }
 
+    /// Takes glue, or a chunk that follows the last pass.
+    fn read_extra(&mut self, chunk: &Chunk, work: &mut Work) -> Result<(), DecodeError> {
+        let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
+        let (Some(info), Some(pass)) = (&self.info, self.last_pass()) else {
+            return Err(out_of_order(chunk));
+        };
+        let payload = self.frames.payload(chunk);
+        let announced = match chunk.kind {
+            kind::GLUE => pass.glue_bytes,
+            kind => info.trailing.iter().find(|t| t.code == kind).map_or(0, |t| t.bytes),
+        };
+        if chunk::other_size(payload.len() as u32) != announced {
+            return Err(malformed("a chunk differs from its announcement"));
+        }
+        let buffered = self.frames.buffered() as u64 + passes::memory_for(pass);
+        let mesh = &self.passes.mesh;
+        let (grid, limits, extras) = (&info.grid, &self.limits, &mut self.extras);
+        match chunk.kind {
+            kind::GLUE => assemble::read_glue(extras, mesh, payload, limits, buffered),
+            kind::LOOSE => assemble::read_loose(extras, mesh, grid, payload, limits, buffered),
+            kind::EXACT => assemble::read_exact(extras, mesh, grid, payload, limits, buffered),
+            kind::ORDER => assemble::read_order(extras, mesh, payload, limits, buffered),
+            _ => Ok(()),
+        }
+        .map_err(|e| e.at(chunk.offset))?;
+        work.sweep(mesh.positions.len() + mesh.surface.triangles.len());
+        Ok(())
+    }
+
+    /// The pass that was done last.
+    fn last_pass(&self) -> Option<&PassInfo> {
+        self.info.as_ref()?.passes.get(self.done.checked_sub(1)?)
+    }
+
     /// The pass that is decoded next, unless the stream or the wanted level is complete.
     fn next_pass(&self) -> Option<&PassInfo> {
         let pass = self.info.as_ref()?.passes.get(self.done)?;
@@ -354,7 +411,7 @@ impl Decoder {
             None => (&mesh.positions[..], &mesh.surface.triangles[..]),
         };
         let (precision, level) = (pass.precision, pass.level);
-        Some(LevelMesh { cells, triangles, grid: &info.grid, precision, level })
+        Some(LevelMesh { cells, triangles, grid: &info.grid, precision, level, extras: &self.extras })
     }
 
     /// The mesh so far, with what has arrived of the next pass: vertices whose bytes are missing stay
@@ -372,7 +429,7 @@ impl Decoder {
         Some(LevelMesh { cells, triangles, precision: pass.precision, ..complete }.to_tri_mesh())
     }
 
-    /// Attributes of [`Decoder::mesh`], without gaps: values that have not come yet are guessed from those around.
+    /// Attributes of the surface [`Decoder::mesh`], without gaps: values that have not come yet are guessed from those around.
     /// Empty before the base mesh is complete, and of a stream without attributes. Collected anew by each call.
     pub fn attributes(&self) -> Attributes {
         let Some(attributes) = self.attributes.as_ref().filter(|_| self.done > 0) else {
@@ -387,20 +444,31 @@ impl Decoder {
         self.attributes.as_ref().map_or(&[], AttributeDecoder::bytes)
     }
 
+    /// The mesh that was encoded, as far as what has come tells ([`LevelMesh::to_tri_mesh`]), with its attributes.
+    /// What lies loose has none.
+    pub fn to_tri_mesh_with_attributes(&self) -> Option<(TriMesh, Attributes)> {
+        Some(self.assemble(self.mesh()?, self.attributes()))
+    }
+
     /// [`Decoder::preview`] with its attributes.
     pub fn preview_with_attributes(&self) -> Option<(TriMesh, Attributes)> {
         let complete = self.mesh()?;
         let Some((pass, mesh, patches)) = self.mesh_with_cut() else {
-            return Some((complete.to_tri_mesh(), self.attributes()));
+            return self.to_tri_mesh_with_attributes();
         };
         let (cells, triangles) = (&mesh.positions[..], &mesh.surface.triangles[..]);
-        let cut = LevelMesh { cells, triangles, precision: pass.precision, ..complete }.to_tri_mesh();
+        let cut = LevelMesh { cells, triangles, precision: pass.precision, ..complete };
         let first = complete.num_vertices();
         let attributes = match &self.attributes {
             Some(attributes) if pass.kind == PassKind::Split => attributes.with_cut(&mesh, &patches, first),
             _ => self.attributes(),
         };
-        Some((cut, attributes))
+        Some(self.assemble(cut, attributes))
+    }
+
+    fn assemble(&self, mesh: LevelMesh, attributes: Attributes) -> (TriMesh, Attributes) {
+        let attributes = self.extras.assemble_attributes(mesh.num_vertices(), mesh.triangles(), attributes);
+        (mesh.to_tri_mesh(), attributes)
     }
 
     fn mesh_with_cut(&self) -> Option<(&PassInfo, GridMesh, Patches)> {

@@ -12,6 +12,7 @@ use crate::mesh::Surface;
 use crate::mesh::repair::{Repaired, repair};
 use crate::partition::{Geometry, Optimize};
 use crate::{EncodeError, TriMesh};
+use bitvec::vec::BitVec;
 
 /// Triangles of M^0 … M^L. M^k has the vertices below its number.
 #[derive(Clone, Debug, Default)]
@@ -62,7 +63,8 @@ impl Tower {
         let Options { descriptor, window, growth, levels, partition, .. } = *options;
         let optimize = Optimize::default();
         let settings = Settings { descriptor, window, growth, levels, partition, optimize };
-        let mut descent = Descent::new(surface, geometry, mean_edge, settings);
+        let none: BitVec = BitVec::repeat(false, num_vertices);
+        let mut descent = Descent::new(surface, geometry, mean_edge, settings, none);
         // Finest first, in the numbering of the surface.
         let mut levels: Vec<Level> = descent.by_ref().map(|(finer, _)| finer).collect();
         levels.push(descent.into_level());
@@ -110,13 +112,13 @@ impl Tower {
                 }
             }
             if mesh.num_vertices() == num_vertices {
-                coarse = Some(mesh.to_tri_mesh());
+                coarse = Some(mesh.to_cut_mesh());
             }
         }
         if !decoder.is_complete() {
             return Err(EditError::Incomplete);
         }
-        let fine = decoder.mesh().ok_or(EditError::Incomplete)?.to_tri_mesh();
+        let fine = decoder.mesh().ok_or(EditError::Incomplete)?.to_cut_mesh();
         let coarse = coarse.ok_or(EditError::Vertices { found: num_vertices, levels: counts })?;
         Ok(StreamTower { tower, coarse, fine })
     }

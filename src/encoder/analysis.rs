@@ -7,6 +7,7 @@ use crate::descriptors;
 use crate::mesh::Surface;
 use crate::partition::Geometry;
 use crate::simplify::{LevelRecord, Seams};
+use bitvec::vec::BitVec;
 
 /// Share of an encoder's time that goes into the analysis.
 pub(super) const ANALYSIS_SHARE: f64 = 0.6;
@@ -32,10 +33,11 @@ pub(super) struct Hierarchy {
 }
 
 /// Goes down from `surface`, whose vertices have the places `cells`. Nothing else is looked at, so that a
-/// decoded mesh gives the same levels.
+/// decoded mesh gives the same levels. The vertices `glued` are in all of them.
 pub(super) fn analyse(
     surface: Surface,
     cells: &[[i32; 3]],
+    glued: BitVec,
     seams: Seams,
     options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
@@ -48,7 +50,8 @@ pub(super) fn analyse(
     let mean_edge = descriptors::mean_edge_length(&mesh);
     let (positions, _) = mesh.into_parts();
     let geometry = Geometry { grid: cells, positions: &positions };
-    let mut descent = Descent::new(surface, geometry, mean_edge, settings(options)).with_seams(seams);
+    let descent = Descent::new(surface, geometry, mean_edge, settings(options), glued);
+    let mut descent = descent.with_seams(seams);
     let squared_step = steps_per_unit.powi(2);
     let mut records = Vec::new();
     let mut mean_edges = vec![descent.level().mean_edge(cells)];

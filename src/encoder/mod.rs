@@ -7,7 +7,10 @@ mod options;
 mod order;
 pub(crate) mod quantise;
 mod schedule;
+mod trailing;
 mod write;
+
+use trailing::Exact;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
@@ -60,26 +63,31 @@ pub fn encode_with_attributes(
         return Err(EncodeError::TooLarge(num_usable));
     }
     let corners = mesh.triangles().iter().filter(|t| is_used(t)).flatten();
-    let grid = quantise::grid_around(corners.map(|&v| mesh.positions()[v as usize]), options.quantization)?;
+    let mut loose = trailing::loose_vertices(mesh, options);
+    let points = corners.chain(&loose).map(|&v| mesh.positions()[v as usize]);
+    let grid = quantise::grid_around(points, options.quantization)?;
+    trailing::sort_loose(&mut loose, mesh, &grid);
     let ordered = order::order(mesh, &grid);
-    let (surface, source) = cut(ordered.triangles, ordered.cells.len());
+    let (surface, source) = cut(ordered.triangles.clone(), ordered.cells.len());
     if surface.corner_of.len() >= (u32::MAX / 4) as usize {
         return Err(EncodeError::TooLarge(surface.corner_of.len()));
     }
     let repair = RepairReport {
-        degenerate_faces: mesh.num_triangles() - num_usable,
-        isolated_vertices: mesh.num_vertices() - ordered.cells.len(),
+        degenerate_faces: if options.keep_degenerate { 0 } else { mesh.num_triangles() - num_usable },
+        isolated_vertices: mesh.num_vertices() - ordered.cells.len() - loose.len(),
         repeated_vertices: source.len() - ordered.cells.len(),
     };
     let cells: Vec<[i32; 3]> = source.iter().map(|&v| ordered.cells[v as usize]).collect();
     let vertices: Vec<u32> = source.iter().map(|&v| ordered.vertex_source[v as usize]).collect();
     let elements = attributes::Elements { vertices: &vertices, corners: &ordered.corner_source };
     let quantised = attributes::quantise(mesh, attributes, elements, options)?;
-    drop((source, vertices));
-    let hierarchy = analysis::analyse(surface, &cells, quantised.seams(), options, progress);
+    drop(vertices);
+    let glued = trailing::kept(&source);
+    let hierarchy = analysis::analyse(surface, &cells, glued, quantised.seams(), options, progress);
+    let exact = Exact { mesh, grid: &grid, ordered: &ordered, source: &source, loose: &loose, options };
     let write = |steps_per_edge| {
         let schedule = schedule::plan(&hierarchy, options.quantization, steps_per_edge);
-        write::write(&hierarchy, &cells, &grid, &quantised, &schedule, options, progress)
+        write::write(&hierarchy, &cells, &quantised, &exact, &schedule, progress)
     };
     let mut bytes = write(options.steps_per_edge);
     if options.optimize == Optimize::Size && options.steps_per_edge.is_none() {

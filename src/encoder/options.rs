@@ -34,6 +34,16 @@ pub struct EncodeOptions {
     pub color_bits: u32,
     /// Bits of a component of any other attribute, 1 to 30. Integers that fit are kept exactly. Default 12.
     pub generic_bits: u32,
+    /// Keep vertices that no triangle has. Default false: they are dropped and counted.
+    pub keep_isolated: bool,
+    /// Keep triangles that name a vertex twice, and the vertices they name. Default false: they are dropped
+    /// and counted.
+    pub keep_degenerate: bool,
+    /// Keep all coordinates bit for bit, behind the last pass. Default false.
+    pub lossless: bool,
+    /// Keep the order of vertices and triangles and the first corner of each, behind the last pass. Default
+    /// false.
+    pub keep_order: bool,
 }
 
 impl Default for EncodeOptions {
@@ -51,6 +61,10 @@ impl Default for EncodeOptions {
             uv_bits: 10,
             color_bits: 8,
             generic_bits: 12,
+            keep_isolated: false,
+            keep_degenerate: false,
+            lossless: false,
+            keep_order: false,
         }
     }
 }

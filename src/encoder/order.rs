@@ -95,7 +95,7 @@ struct Ties<'a> {
 /// Rounds in which all vertices look at their neighbours.
 const ROUNDS: usize = 4;
 /// Vertices that may be looked at to tell the rest apart, times the vertices there are.
-const BUDGET: usize = 24;
+const BUDGET: usize = 100;
 
 impl<'a> Ties<'a> {
     /// `codes` ascend.
@@ -154,15 +154,13 @@ impl<'a> Ties<'a> {
         let mut start = 0;
         for stamp in 1.. {
             let Some(tie) = self.first_tie(start) else { return };
-            start = tie;
             let marked = self.order[tie];
             self.hash[marked as usize] = mix(!self.hash[marked as usize]);
             seen[marked as usize] = stamp;
             let mut changed = vec![marked];
-            let mut first_of_ring = 0;
-            while first_of_ring < changed.len() {
-                let ring = first_of_ring..changed.len();
-                first_of_ring = ring.end;
+            let mut rings = Vec::new();
+            let mut ring = 0..1;
+            while !ring.is_empty() {
                 for i in ring.clone() {
                     for &corner in corners.at(changed[i]) {
                         for &v in &self.triangles[(corner / 3) as usize] {
@@ -173,18 +171,22 @@ impl<'a> Ties<'a> {
                         }
                     }
                 }
-                let hashes: Vec<u64> =
-                    changed[first_of_ring..].iter().map(|&v| self.around(v, &corners)).collect();
-                changed[first_of_ring..].iter().zip(hashes).for_each(|(&v, h)| self.hash[v as usize] = h);
+                ring = ring.end..changed.len();
+                self.look_around(&changed[ring.clone()], &corners);
+                rings.push(ring.clone());
             }
             // Once more from near to far, so that what lies beside each other is told apart as well.
-            for i in 1..changed.len() {
-                self.hash[changed[i] as usize] = self.around(changed[i], &corners);
-            }
+            rings.into_iter().for_each(|ring| self.look_around(&changed[ring], &corners));
             let Some(left) = budget.checked_sub(4 * changed.len()) else { return };
             budget = left;
-            self.sort_some(&changed);
+            start = self.sort_some(&changed).min(tie);
         }
+    }
+
+    /// All of some vertices at once, so that their order does not matter.
+    fn look_around(&mut self, vertices: &[u32], corners: &CornersAt) {
+        let hashes: Vec<u64> = vertices.iter().map(|&v| self.around(v, corners)).collect();
+        vertices.iter().zip(hashes).for_each(|(&v, hash)| self.hash[v as usize] = hash);
     }
 
     fn around(&self, v: u32, corners: &CornersAt) -> u64 {
@@ -196,11 +198,12 @@ impl<'a> Ties<'a> {
         mix(self.hash[v as usize] ^ mix(sum))
     }
 
-    /// Sorts the runs of equal codes anew that have one of `changed`.
-    fn sort_some(&mut self, changed: &[u32]) {
+    /// Sorts the runs of equal codes anew that have one of `changed`; the first place of the first of them.
+    fn sort_some(&mut self, changed: &[u32]) -> usize {
         let mut codes: Vec<u128> = changed.iter().map(|&v| self.codes[v as usize]).collect();
         codes.sort_unstable();
         codes.dedup();
+        let first_run = codes.first().map_or(0, |&code| self.codes.partition_point(|&c| c < code));
         let mut order = std::mem::take(&mut self.order);
         for code in codes {
             // Vertices were numbered by code, so that a run keeps its places.
@@ -209,6 +212,7 @@ impl<'a> Ties<'a> {
             order[first..end].sort_unstable_by_key(|&v| self.key(v));
         }
         self.order = order;
+        first_run
     }
 }
 

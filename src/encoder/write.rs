@@ -3,10 +3,12 @@
 use super::analysis::{ANALYSIS_SHARE, Hierarchy};
 use super::attribute_writer::AttributeWriter;
 use super::attributes::Quantised;
-use super::options::{EncodeOptions, Progress};
+use super::options::Progress;
 use super::schedule::{Schedule, Step};
+use super::trailing::{Exact, Written};
+use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
-use crate::bitstream::header::{Action, Grid, Header, MAX_VERTICES_PER_BYTE, Pass, Provenance};
+use crate::bitstream::header::{Action, Header, MAX_VERTICES_PER_BYTE, Pass, Provenance};
 use crate::bitstream::pass_table;
 use crate::bitstream::range_coder::RangeEncoder;
 use crate::mesh::surface::{NO_CORNER, next, prev};
@@ -14,22 +16,23 @@ use crate::passes::GridMesh;
 use crate::passes::base::{self, BaseTarget};
 use crate::passes::connectivity::{self, ConnectivityModels, ConnectivityTarget, NOT_IN_PATCH};
 use crate::passes::coordinates::{self, CoordinateModels};
+use crate::passes::glue::{self, GlueModels};
 use crate::passes::patch::{Patches, Star, StarBuilder};
 use crate::passes::refine::{self, RefineModels};
 use crate::simplify::LevelRecord;
+use bitvec::vec::BitVec;
 use std::collections::HashMap;
 
 /// Writes the stream. `cells` are those of the full surface at full precision.
 pub(super) fn write(
     hierarchy: &Hierarchy,
     cells: &[[i32; 3]],
-    grid: &Grid,
     attributes: &Quantised,
+    exact: &Exact,
     schedule: &Schedule,
-    options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Vec<u8> {
-    let mut writer = PassWriter::new(hierarchy, cells, attributes, grid.precision, schedule.base_precision);
+    let mut writer = PassWriter::new(hierarchy, cells, attributes, exact, schedule.base_precision);
     for step in &schedule.steps {
         let fraction = writer.mesh.positions.len() as f64 / hierarchy.num_vertices as f64;
         progress(Progress { stage: "passes", fraction: ANALYSIS_SHARE + (1.0 - ANALYSIS_SHARE) * fraction });
@@ -39,19 +42,26 @@ pub(super) fn write(
         }
     }
     debug_assert_eq!(writer.mesh.surface.triangles.len(), hierarchy.num_faces);
+    let surface = Written {
+        mesh: &writer.mesh,
+        vertex_source: &writer.vertex_source,
+        face_source: &writer.face_source,
+    };
+    let trailing = exact.trailing(&surface, writer.roots);
     let values = writer.attributes.into_payloads();
-    assemble(grid, hierarchy, attributes, options, &writer.passes, &values)
+    assemble(exact, hierarchy, attributes, &writer.passes, &values, &trailing)
 }
 
 /// Frames headers and passes.
 fn assemble(
-    grid: &Grid,
+    exact: &Exact,
     hierarchy: &Hierarchy,
     attributes: &Quantised,
-    options: &EncodeOptions,
-    passes: &[(Pass, Vec<u8>)],
+    passes: &[WrittenPass],
     values: &[Vec<u8>],
+    trailing: &[(u8, Vec<u8>)],
 ) -> Vec<u8> {
+    let Exact { grid, options, .. } = *exact;
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
     let provenance = Provenance {
@@ -70,15 +80,36 @@ fn assemble(
     if !attributes.is_empty() {
         chunk::write(&mut bytes, kind::DECLARATIONS, &attributes.declare(values).write());
     }
-    let rows: Vec<Pass> = passes.iter().map(|(row, _)| *row).collect();
+    let glue = passes.iter().zip(0..).filter_map(|(pass, i)| Some((i, pass.glue.as_ref()?.len() as u32)));
+    let announced = Announced {
+        glue: glue.collect(),
+        trailing: trailing.iter().map(|(kind, payload)| (*kind, payload.len() as u32)).collect(),
+    };
+    if !announced.is_empty() {
+        chunk::write(&mut bytes, kind::ANNOUNCED, &announced.write());
+    }
+    let rows: Vec<Pass> = passes.iter().map(|pass| pass.row).collect();
     chunk::write(&mut bytes, kind::PASSES, &pass_table::write_passes(&rows));
-    for (i, (row, payload)) in passes.iter().enumerate() {
+    for (i, WrittenPass { row, payload, glue }) in passes.iter().enumerate() {
         chunk::write(&mut bytes, row.action.kind(), payload);
         if let Some(values) = values.get(i).filter(|values| !values.is_empty()) {
             chunk::write(&mut bytes, kind::ATTRIBUTES, values);
         }
+        if let Some(glue) = glue {
+            chunk::write(&mut bytes, kind::GLUE, glue);
+        }
+    }
+    for (kind, payload) in trailing {
+        chunk::write(&mut bytes, *kind, payload);
     }
     bytes
+}
+
+/// Row and payload of a pass, and the glue behind it.
+struct WrittenPass {
+    row: Pass,
+    payload: Vec<u8>,
+    glue: Option<Vec<u8>>,
 }
 
 /// The decoder's state, and how its numbering maps to that of the full surface.
@@ -97,7 +128,15 @@ struct PassWriter<'a> {
     attributes: AttributeWriter<'a>,
     /// Scratch: patch of each slot of the full surface.
     patch_of_slot: Vec<u32>,
-    passes: Vec<(Pass, Vec<u8>)>,
+    passes: Vec<WrittenPass>,
+    /// Vertex of the joined surface for each vertex of the full one.
+    source: &'a [u32],
+    glue: GlueModels,
+    roots: Vec<u32>,
+    /// Vertices before the present pass.
+    num_seen: usize,
+    /// For each joined vertex whether it has come.
+    has_come: BitVec,
 }
 
 impl<'a> PassWriter<'a> {
@@ -105,9 +144,10 @@ impl<'a> PassWriter<'a> {
         hierarchy: &Hierarchy,
         cells: &'a [[i32; 3]],
         attributes: &'a Quantised,
-        full_precision: u32,
+        exact: &Exact<'a>,
         precision: u32,
     ) -> Self {
+        let full_precision = exact.grid.precision;
         let hidden = full_precision - precision;
         let positions: Vec<[i32; 3]> =
             hierarchy.base_vertices.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)).collect();
@@ -133,6 +173,11 @@ impl<'a> PassWriter<'a> {
             attributes: AttributeWriter::new(attributes),
             patch_of_slot: vec![NOT_IN_PATCH; hierarchy.num_faces],
             passes: Vec::new(),
+            source: exact.source,
+            glue: GlueModels::default(),
+            roots: Vec::new(),
+            num_seen: 0,
+            has_come: BitVec::repeat(false, exact.ordered.cells.len()),
         };
         let more_vertices = hierarchy.num_vertices - num_vertices;
         writer.mesh.reserve(more_vertices, hierarchy.num_faces - num_faces);
@@ -154,7 +199,25 @@ impl<'a> PassWriter<'a> {
         let least = touched.div_ceil(MAX_VERTICES_PER_BYTE as usize).saturating_sub(1);
         payload.resize(payload.len().max(least), 0);
         row.bytes = payload.len() as u32;
-        self.passes.push((row, payload));
+        let glue = self.glue_of_new_vertices();
+        self.passes.push(WrittenPass { row, payload, glue });
+    }
+
+    /// Payload of the glue behind a pass, if one of its vertices is the same as one that is there.
+    fn glue_of_new_vertices(&mut self) -> Option<Vec<u8>> {
+        let num_old = self.num_seen;
+        self.num_seen = self.vertex_source.len();
+        let mut is_glued = false;
+        for &v in &self.vertex_source[num_old..] {
+            is_glued |= self.has_come.replace(self.source[v as usize] as usize, true);
+        }
+        if !is_glued {
+            return None;
+        }
+        let names: Vec<u32> = self.vertex_source.iter().map(|&v| self.source[v as usize]).collect();
+        let mut coder = RangeEncoder::new();
+        expect_sound(glue::code(&mut coder, &mut self.glue, &self.mesh, &mut self.roots, Some(&names)));
+        Some(coder.finish())
     }
 
     fn refine(&mut self) {

@@ -13,13 +13,14 @@ use std::collections::VecDeque;
 pub(crate) struct Anchors {
     edges: Vec<[u32; 2]>,
     fixed: BitVec,
+    glued: BitVec,
 }
 
 impl Anchors {
-    /// Takes the first edge of the first triangle of each component.
-    pub(crate) fn new(surface: &Surface) -> Self {
+    /// Takes the first edge of the first triangle of each component. The vertices `glued` stay as well.
+    pub(crate) fn new(surface: &Surface, glued: BitVec) -> Self {
         let mut seen: BitVec = BitVec::repeat(false, surface.triangles.len());
-        let mut fixed: BitVec = BitVec::repeat(false, surface.corner_of.len());
+        let mut fixed = glued.clone();
         let mut edges = Vec::new();
         let mut stack = Vec::new();
         for face in 0..surface.triangles.len() {
@@ -42,7 +43,12 @@ impl Anchors {
                 }
             }
         }
-        Self { edges, fixed }
+        Self { edges, fixed, glued }
+    }
+
+    /// True for vertices that no partition may take.
+    pub(crate) fn is_glued(&self, vertex: u32) -> bool {
+        self.glued[vertex as usize]
     }
 
     pub(crate) fn contain(&self, vertex: u32) -> bool {

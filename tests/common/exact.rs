@@ -22,6 +22,12 @@ pub struct Quantised {
 /// g = floor((x − min)·(2^q − 1)/s + ½), min per axis and s the largest side, both over the vertices
 /// that usable triangles use.
 pub fn quantise(mesh: &TriMesh, precision: u32) -> Quantised {
+    quantise_on(mesh, precision, None)
+}
+
+/// The same with the side of a stream, which may differ from the largest one by roundings of numbers as large
+/// as the coordinates.
+pub fn quantise_on(mesh: &TriMesh, precision: u32, side_of_stream: Option<f64>) -> Quantised {
     let usable: Vec<[u32; 3]> =
         mesh.triangles().iter().copied().filter(|&[a, b, c]| a != b && b != c && c != a).collect();
     let mut used: Vec<u32> = usable.iter().flatten().copied().collect();
@@ -38,6 +44,17 @@ pub fn quantise(mesh: &TriMesh, precision: u32) -> Quantised {
     let high: [f64; 3] =
         std::array::from_fn(|axis| used.iter().map(|&v| at(v)[axis]).fold(f64::NEG_INFINITY, f64::max));
     let side = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+    let side = match side_of_stream.map(|side| side * unit) {
+        Some(exact) => {
+            let magnitude = low.iter().chain(&high).fold(side, |m: f64, c| m.max(c.abs()));
+            assert!(
+                (exact - side).abs() <= 8.0 * magnitude * f64::EPSILON,
+                "side {exact} in place of {side}"
+            );
+            exact
+        }
+        None => side,
+    };
     let steps = (2f64.powi(precision as i32)) - 1.0;
     let cell = |v: u32| -> [i64; 3] {
         std::array::from_fn(|axis| match side {
@@ -81,13 +98,13 @@ pub fn assert_round_trip(mesh: &TriMesh, options: &EncodeOptions, what: &str) ->
 /// The finest mesh of the stream holds every usable triangle of `mesh`, and nothing else.
 #[track_caller]
 pub fn assert_exact(mesh: &TriMesh, precision: u32, stream: &[u8], report: &RepairReport, what: &str) {
-    let wanted = quantise(mesh, precision);
     let mut decoder = Decoder::new(Limits::default());
     if let Err(error) = decoder.push(stream) {
         panic!("{what}: {error}");
     }
     assert!(decoder.is_complete(), "{what}: passes are missing");
     let decoded = decoder.mesh().expect("a complete stream has a mesh");
+    let wanted = quantise_on(mesh, precision, decoder.info().map(|info| info.side()));
     assert_eq!(decoded.precision(), precision, "{what}");
     assert_eq!(report.degenerate_faces, wanted.degenerate_faces, "{what}");
     assert_eq!(report.isolated_vertices, mesh.num_vertices() - wanted.used_vertices, "{what}");
@@ -109,4 +126,6 @@ pub fn assert_exact(mesh: &TriMesh, precision: u32, stream: &[u8], report: &Repa
     }
     let one_shot = decode(stream, DecodeOptions::new()).expect("decoded a moment ago");
     assert_eq!(one_shot, decoded.to_tri_mesh(), "{what}");
+    assert_eq!(one_shot.num_vertices(), wanted.used_vertices, "{what}");
+    assert_eq!(one_shot.num_triangles(), wanted.triangles.len(), "{what}");
 }
