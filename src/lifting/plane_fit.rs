@@ -26,6 +26,8 @@ pub(crate) struct Conformal {
     pub(crate) values: [f32; 2],
     /// What it explains of the points' variance; the larger of two fits is the better one.
     pub(crate) explained: f32,
+    /// Root mean square of what it does not explain.
+    pub(crate) misfit: f32,
 }
 
 impl PlaneFit {
@@ -96,14 +98,22 @@ impl PlaneFit {
         let [vx, vy] = self.slopes(channels[1], means[1]);
         let total = self.moments[0] + self.moments[2];
         if !(total > 0.0) {
-            return Conformal { values: means, explained: 0.0 };
+            return Conformal { values: means, explained: 0.0, misfit: 0.0 };
         }
         let re = (ux + sign * vy) / total;
         let im = (vx - sign * uy) / total;
         let [x, y] = [self.centre[0], sign * self.centre[1]];
+        let explained = (re * re + im * im) * total;
+        let mut variance = 0.0;
+        for (k, place) in self.places.iter().enumerate() {
+            let (u, v) = (channels[0][k] - means[0], channels[1][k] - means[1]);
+            variance += place[2] * (u * u + v * v);
+        }
+        let misfit = (variance - explained).max(0.0) / self.weight;
         Conformal {
             values: [means[0] - (re * x - im * y), means[1] - (re * y + im * x)],
-            explained: (re * re + im * im) * total,
+            explained,
+            misfit: misfit.sqrt(),
         }
     }
 }

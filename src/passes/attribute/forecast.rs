@@ -30,7 +30,7 @@ pub(super) enum Flavour {
 const NUM_FEATURES: usize = 5;
 const FIRST_WEIGHTS: [f32; NUM_FEATURES] = [0.3, 0.4, 0.1, 0.0, 0.0];
 /// Classes of neighbourhoods with filters of their own.
-const NUM_CLASSES: usize = 7;
+const NUM_CLASSES: usize = 8;
 /// Channels with models of their own, the last ones sharing.
 const NUM_PLACES: usize = 4;
 const FIRST_SCALES: [f32; NUM_CUES] = [-0.4, 0.35, 0.3, 0.1, 0.1, 0.0, 0.05];
@@ -74,6 +74,8 @@ struct Outlook {
     features: [f32; 3],
     /// Middle of the ring's values.
     median: f32,
+    /// Of maps: how far the known points lie off the conformal fit.
+    misfit: f32,
 }
 
 /// Scratch space.
@@ -176,6 +178,15 @@ impl NumberModels {
         View((sum < 0.0).then_some(octahedron))
     }
 
+    /// Of directions: where that of the surface is, unless it has none.
+    fn project(&self, around: &Around, view: View) -> Option<[f32; 2]> {
+        let Flavour::Normal(octahedron) = self.flavour else { return None };
+        let [x, y, z, _] = around.normal.0;
+        let z = if view.0.is_some() { -z } else { z };
+        let is_flat = around.normal.dot3(around.normal) > 0.0;
+        is_flat.then(|| project([x, y, z], octahedron.radius() as f32))
+    }
+
     /// Fills the outlook of each channel, and the origin that all is counted from.
     fn look(&mut self, rows: &Rows, around: &Around, view: View, scratch: &mut Scratch) {
         let Scratch { fit, values, other, sorted, outlooks, origin, .. } = scratch;
@@ -185,6 +196,11 @@ impl NumberModels {
         outlooks.resize(num_channels, Outlook::default());
         let [low, high] = self.range;
         let Some(first) = around.ring.first() else {
+            if let Some(place) = self.project(around, view) {
+                origin.extend(place.map(|c| c as i32));
+                outlooks.iter_mut().for_each(|outlook| outlook.spread = high as f32 * 0.05);
+                return;
+            }
             let middle = low + (high - low) / 2;
             let last = |k| rows.last().map_or(middle, |last| view.channel(last, k));
             origin.extend((0..num_channels).map(last));
@@ -234,6 +250,7 @@ impl NumberModels {
                 spread: spread * share,
                 features: [near / weight, affine - mean, parallelogram],
                 median,
+                misfit: 0.0,
             };
         }
         match self.flavour {
@@ -249,14 +266,16 @@ impl NumberModels {
                     self.mirrored > 0.0
                 };
                 let found = if is_mirrored { mirrored } else { plain };
-                for k in 0..2 {
-                    outlooks[k].features[2] = found.values[k] - outlooks[k].mean;
+                // A map stretches along one channel what lies along the other next to it.
+                let spread = (outlooks[0].spread + outlooks[1].spread) * 0.5;
+                for (outlook, value) in outlooks.iter_mut().zip(found.values) {
+                    outlook.features[2] = value - outlook.mean;
+                    outlook.spread = spread;
+                    outlook.misfit = found.misfit;
                 }
             }
-            Flavour::Normal(octahedron) => {
-                let [x, y, z, _] = around.normal.0;
-                let z = if view.0.is_some() { -z } else { z };
-                let place = project([x, y, z], octahedron.radius() as f32);
+            Flavour::Normal(_) => {
+                let place = self.project(around, view).unwrap_or_default();
                 for k in 0..2 {
                     outlooks[k].features[2] = (place[k] - origin[k] as f32) - outlooks[k].mean;
                 }
@@ -268,7 +287,7 @@ impl NumberModels {
     fn guess(&self, place: usize, class: usize, outlook: &Outlook, by_ring: f32, errors: [f32; 2]) -> Guess {
         let place = place.min(NUM_PLACES - 1);
         let w = self.filters[class][place].weights();
-        let Outlook { mean, features: [near, affine, special], spread, median } = *outlook;
+        let Outlook { mean, features: [near, affine, special], spread, median, .. } = *outlook;
         let cross = w[3] * errors[0] + w[4] * errors[1];
         let all = mean + sum(w, [near, affine, special, errors[0], errors[1]]);
         let third = match self.flavour {
@@ -284,7 +303,11 @@ impl NumberModels {
             by_ring,
             log(affine - near),
             if place > 0 { by_error } else { 0.0 },
-            if place > 1 { log(errors[1]) } else { 0.0 },
+            match self.flavour {
+                Flavour::TexCoord if place < 2 => log(outlook.misfit),
+                _ if place > 1 => log(errors[1]),
+                _ => 0.0,
+            },
             log(mean + special - all),
         ]
         .map(Lanes::splat);
@@ -370,5 +393,10 @@ impl Guess {
 /// Closed rings by their size, then open ones.
 fn class(around: &Around) -> usize {
     let n = around.ring.len();
-    if around.is_closed { n.clamp(4, 7) - 4 } else { 4 + n.clamp(2, 4) - 2 }
+    match n {
+        _ if around.is_closed => n.clamp(4, 7) - 4,
+        0..=2 => 4 + usize::from(!around.tips.is_empty()),
+        3 => 6,
+        _ => 7,
+    }
 }

@@ -1,6 +1,6 @@
 //! One attribute on the present mesh, and what a pass brings of it (`format/SPEC.md`, section 7.6).
 
-use super::around::Around;
+use super::around::{Around, Known};
 use super::declaration::{Coding, Declaration};
 use super::forecast::{Flavour, NumberModels, Scratch};
 use super::octahedron::Octahedron;
@@ -10,7 +10,7 @@ use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
 use crate::lanes::Lanes;
 use crate::mesh::surface::{NO_CORNER, next, prev};
-use crate::mesh::{Domain, NO_ROW, Semantic};
+use crate::mesh::{Domain, NO_ROW, Semantic, Surface};
 use crate::passes::patch::Patches;
 use crate::passes::work::Work;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
@@ -19,6 +19,10 @@ use crate::passes::{EXHAUSTED, GridMesh, Malformed};
 const MAX_REPEATED: usize = 3;
 /// Different rows around that are told apart.
 const MAX_COMPARED: usize = 16;
+/// Triangles looked at on either side of a corner that does not inherit.
+const MAX_TURNS: usize = 8;
+/// What a corner inherits is not what the triangle outside has.
+const TORN: usize = 1;
 /// Bits of a row's number in a table that have models; the rest are raw.
 const MODELLED_BITS: u32 = 8;
 
@@ -72,6 +76,10 @@ pub(crate) struct Desk {
     numbers: Scratch,
     corners: Vec<u32>,
     inherited: Vec<[u32; 2]>,
+    /// Corners that do not inherit, and what they would have.
+    exceptions: Vec<(u32, u32)>,
+    /// More rows that such a corner may repeat.
+    repeatable: Vec<u32>,
     is_seam: Vec<bool>,
     repeated: Vec<(u32, usize)>,
 }
@@ -131,7 +139,7 @@ impl Layer {
                 ),
                 numbers: NumberModels::new(flavour, declaration.channel_range()),
                 symbols: PlainBits::new(1 << MODELLED_BITS),
-                inherited: PlainBits::new(4),
+                inherited: PlainBits::new(11),
                 has_seam: PlainBits::new(8),
                 seam: PlainBits::new(9),
             },
@@ -216,7 +224,7 @@ impl Layer {
         let closed = surface.fan(surface.corner_of[vertex as usize], &mut desk.corners);
         if let Some(patches) = patches {
             let star = Star { patches, patch: vertex as usize - first, vertex };
-            self.inherit_corners(coder, mesh, star, truth, desk)?;
+            self.inherit_corners(coder, mesh, star, truth, desk);
         }
         let corners = std::mem::take(&mut desk.corners);
         self.code_seams(coder, mesh, vertex, &corners, closed, truth, desk);
@@ -238,6 +246,9 @@ impl Layer {
             begin += length;
         }
         desk.corners = turned;
+        if patches.is_some() {
+            self.code_exceptions(coder, mesh, vertex, truth, desk)?;
+        }
         Ok(())
     }
 
@@ -262,7 +273,7 @@ impl Layer {
                 return UNKNOWN;
             }
             let [left, right] = [prev(before(i)), next(corners[i])].map(|c| self.rows.of[c as usize]);
-            usize::from(left != right)
+            if (left == NO_ROW) != (right == NO_ROW) { UNKNOWN } else { usize::from(left != right) }
         };
         let is_seam = |i: usize| {
             truth.is_some_and(|truth| truth.of[corners[i] as usize] != truth.of[before(i) as usize])
@@ -295,7 +306,7 @@ impl Layer {
         star: Star,
         truth: Option<&Truth>,
         desk: &mut Desk,
-    ) -> Result<(), Malformed> {
+    ) {
         desk.inherited.clear();
         for corner in star.polygon(desk.corners.len()) {
             let ends =
@@ -306,33 +317,98 @@ impl Layer {
         let inherited = std::mem::take(&mut desk.inherited);
         let ends = |i: usize| [next(corners[i]), prev(corners[i])];
         let mut is_kept = true;
+        let mut num_torn = 0;
         for (i, rows) in inherited.iter().enumerate() {
             for (corner, &row) in ends(i).into_iter().zip(rows) {
                 self.rows.of[corner as usize] = row;
                 is_kept &= truth.is_none() || wanted(truth, corner as usize, &self.rows).is(&self.rows, row);
+                num_torn += usize::from(self.fit_outside(mesh, star.vertex, corner, corners[i], row) == TORN);
             }
         }
-        let is_kept = coder.is_guessing() || self.models.inherited.code(coder, self.history & 1, is_kept);
+        let is_kept = coder.is_guessing() || self.models.inherited.code(coder, num_torn.min(3), is_kept);
+        desk.exceptions.clear();
         if !is_kept {
             for (i, rows) in inherited.iter().enumerate() {
                 for (corner, &row) in ends(i).into_iter().zip(rows) {
                     let wanted = wanted(truth, corner as usize, &self.rows);
-                    let is_kept = wanted.is(&self.rows, row);
-                    if self.models.inherited.code(coder, 2, is_kept) {
-                        continue;
+                    let fit = self.fit_outside(mesh, star.vertex, corner, corners[i], row);
+                    if !self.models.inherited.code(coder, 4 + fit, wanted.is(&self.rows, row)) {
+                        desk.exceptions.push((corner, row));
                     }
-                    desk.around.clear();
-                    if corner == ends(i)[1] {
-                        desk.around.push(self.rows.of[ends(i)[0] as usize], Lanes::ZERO);
-                    }
-                    desk.around.push(row, Lanes::ZERO);
-                    desk.around.normal = area_vector(mesh, corner / 3);
-                    self.rows.of[corner as usize] = self.code_row(coder, wanted, true, desk)?;
                 }
             }
         }
+        // Until they have rows of their own.
+        desk.exceptions.iter().for_each(|&(corner, _)| self.rows.of[corner as usize] = NO_ROW);
         (desk.corners, desk.inherited) = (corners, inherited);
+    }
+
+    /// Rows of the corners of a star that do not inherit theirs.
+    fn code_exceptions<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        mesh: &GridMesh,
+        vertex: u32,
+        truth: Option<&Truth>,
+        desk: &mut Desk,
+    ) -> Result<(), Malformed> {
+        let exceptions = std::mem::take(&mut desk.exceptions);
+        for &(corner, inherited) in &exceptions {
+            self.gather_exception(mesh, vertex, corner, inherited, desk);
+            let wanted = wanted(truth, corner as usize, &self.rows);
+            self.rows.of[corner as usize] = self.code_row(coder, wanted, true, desk)?;
+        }
+        desk.exceptions = exceptions;
         Ok(())
+    }
+
+    /// Whether what a corner of a star inherits is what the triangle outside has at the same vertex. `facing`: the corner
+    /// at the star's vertex.
+    fn fit_outside(&self, mesh: &GridMesh, vertex: u32, corner: u32, facing: u32, row: u32) -> usize {
+        let across = mesh.surface.across(facing);
+        if across == NO_CORNER || mesh.surface.vertex(across) > vertex {
+            return 2;
+        }
+        let outside = if corner == next(facing) { prev(across) } else { next(across) };
+        if self.rows.of[outside as usize] == row { 0 } else { TORN }
+    }
+
+    /// What is known around a corner of a star that does not inherit: the rest of its wedge at the vertex of the star;
+    /// and rows that it may repeat, of other triangles at its vertex.
+    fn gather_exception(&self, mesh: &GridMesh, vertex: u32, corner: u32, inherited: u32, desk: &mut Desk) {
+        let surface = &mesh.surface;
+        let Desk { around, corners, repeatable, .. } = desk;
+        let of = |c: u32| self.rows.of[c as usize];
+        around.clear();
+        around.normal = area_vector(mesh, corner / 3);
+        let origin = mesh.positions[surface.vertex(corner) as usize];
+        let way = |c: u32| Lanes::between(origin, mesh.positions[surface.vertex(c) as usize]);
+        // One of its neighbours is at the vertex of the star, the other at the far end of the ring edge.
+        let own = 3 * (corner / 3) + 2;
+        let far = if next(corner) == own { prev(corner) } else { next(corner) };
+        around.push(of(own), way(own));
+        around.push(of(far), way(far));
+        for &c in corners.iter().filter(|&&c| c != own && of(c) == of(own)) {
+            for end in [next(c), prev(c)] {
+                if of(end) != NO_ROW && surface.vertex(end) != surface.vertex(corner) {
+                    around.tips.push(Known { row: of(end), way: way(end) });
+                }
+            }
+        }
+        repeatable.clear();
+        repeatable.push(inherited);
+        for turn in [Surface::swing_left, Surface::swing_right] {
+            let mut c = corner;
+            for _ in 0..MAX_TURNS {
+                c = turn(surface, c);
+                if c == NO_CORNER || c == corner {
+                    break;
+                }
+                if surface.triangles[c as usize / 3].iter().all(|&v| v <= vertex) {
+                    repeatable.push(of(c));
+                }
+            }
+        }
     }
 
     fn code_star_faces<B: BitCoder>(
@@ -357,7 +433,7 @@ impl Layer {
             self.rows.of[face] = *row;
         }
         let is_even = inherited.iter().all(|rows| *rows == inherited[0]);
-        let context = usize::from(is_even);
+        let context = 7 + usize::from(is_even);
         let is_kept = coder.is_guessing() || self.models.inherited.code(coder, context, is_kept);
         if !is_kept {
             for (&corner, [row, _]) in corners.iter().zip(&inherited) {
@@ -392,6 +468,7 @@ impl Layer {
             sum * (1.0 / 3.0)
         };
         let own = middle(face);
+        desk.repeatable.clear();
         desk.around.clear();
         desk.around.normal = area_vector(mesh, face);
         if let Some((_, inherited)) = star {
@@ -454,11 +531,13 @@ impl Layer {
     ) -> Option<u32> {
         let found = &mut desk.repeated;
         found.clear();
-        for known in &desk.around.ring {
-            match found.iter().position(|&(row, _)| self.rows.are_equal(row, known.row)) {
+        let around = desk.around.ring.iter().map(|known| known.row);
+        let repeatable: &[u32] = if is_exception { &desk.repeatable } else { &[] };
+        for row in around.chain(repeatable.iter().copied().filter(|&row| row != NO_ROW)) {
+            match found.iter().position(|&(other, _)| self.rows.are_equal(other, row)) {
                 Some(k) => found[k].1 += 1,
                 // Longer rings tell no more.
-                None if found.len() < MAX_COMPARED => found.push((known.row, 1)),
+                None if found.len() < MAX_COMPARED => found.push((row, 1)),
                 None => {}
             }
         }
