@@ -2,6 +2,7 @@
 //!
 //! Each takes any bytes and panics if a promise of the library does not hold.
 
+use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, Frame, kind};
 use crate::bitstream::header::{self, Action, Grid, Header, Pass};
 use crate::bitstream::mixture::Mixture;
@@ -49,11 +50,9 @@ pub fn decode(data: &[u8]) {
     assert_eq!(decoder.mesh().map(|m| m.checksum()), good);
     if let Some(mesh) = decoder.mesh() {
         assert_valid(mesh);
+        assert_sound(mesh.to_tri_mesh());
     }
-    if let Some(preview) = decoder.preview() {
-        let surface = Surface::from_triangles(preview.triangles().to_vec(), preview.positions().len());
-        assert!(surface.is_ok(), "{:?}", surface.err());
-    }
+    decoder.preview().into_iter().for_each(assert_sound);
 }
 
 /// The same bytes, cut differently, give the same updates, meshes and error. The first eight bytes
@@ -143,7 +142,21 @@ pub fn round_trip(data: &[u8]) {
     assert!(decoder.is_complete());
     let Some(decoded) = decoder.mesh() else { panic!("no mesh") };
     assert_eq!(decoded.precision(), options.quantization);
-    assert_eq!(cells_of(decoded), quantised(&mesh, options.quantization));
+    let whole = decoded.to_tri_mesh();
+    let bits =
+        |mesh: &TriMesh| -> Vec<u64> { mesh.positions().iter().flatten().map(|x| x.to_bits()).collect() };
+    if options.lossless && options.keep_order && options.keep_isolated && options.keep_degenerate {
+        assert_eq!(bits(&whole), bits(&mesh));
+        assert_eq!(whole.triangles(), mesh.triangles());
+    }
+    if !options.keep_isolated && !options.keep_degenerate {
+        let usable = || mesh.triangles().iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+        let mut used: Vec<u32> = usable().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        assert_eq!((whole.num_vertices(), whole.num_triangles()), (used.len(), usable().count()));
+        assert_eq!(cells_of(decoded), quantised(&mesh, options.quantization, encoded.info.side()));
+    }
 }
 
 /// Any bits under any probabilities, and any residuals under any densities, return.
@@ -279,6 +292,13 @@ fn have_equal_values(mesh: &TriMesh, a: &Attribute, b: &Attribute) -> bool {
         })
 }
 
+/// Panics unless indices are in range and coordinates finite.
+fn assert_sound(mesh: TriMesh) {
+    let (positions, triangles) = mesh.into_parts();
+    let mesh = TriMesh::new(positions, triangles);
+    assert!(mesh.is_ok(), "{:?}", mesh.err());
+}
+
 /// Panics unless the mesh is what [`LevelMesh`] promises.
 fn assert_valid(mesh: LevelMesh) {
     let surface = Surface::from_triangles(mesh.triangles().to_vec(), mesh.num_vertices());
@@ -336,10 +356,25 @@ fn reframe(data: &[u8]) -> Vec<u8> {
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
     for (kind, payload) in &chunks {
-        let repaired = (*kind == kind::PASSES && !table.is_empty()).then(|| pass_table::write_passes(&table));
+        let repaired = match *kind {
+            kind::PASSES if !table.is_empty() => Some(pass_table::write_passes(&table)),
+            kind::ANNOUNCED => resize_announced(payload, &chunks),
+            _ => None,
+        };
         chunk::write(&mut bytes, *kind, repaired.as_ref().unwrap_or(payload));
     }
     bytes
+}
+
+/// The announced chunks with the sizes of those that are there; `None` if they make no sense.
+fn resize_announced(payload: &[u8], chunks: &[(u8, Vec<u8>)]) -> Option<Vec<u8>> {
+    let mut announced = Announced::read(payload)?;
+    let sizes = |kind: u8| chunks.iter().filter(move |c| c.0 == kind).map(|c| c.1.len() as u32);
+    announced.glue.iter_mut().zip(sizes(kind::GLUE)).for_each(|(glue, size)| glue.1 = size);
+    for (kind, bytes) in &mut announced.trailing {
+        *bytes = sizes(*kind).next().unwrap_or(*bytes);
+    }
+    Some(announced.write())
 }
 
 /// A well-framed stream whose counts and payloads are the input.
@@ -370,18 +405,35 @@ fn made_up(data: &[u8]) -> Vec<u8> {
         payloads.push(payload);
         pass.bytes = size as u32;
     }
+    let mut piece = || {
+        let size = usize::from(input.u8()).min(input.0.len());
+        let (piece, rest) = input.0.split_at(size);
+        input.0 = rest;
+        piece
+    };
+    let glue = piece();
+    let trailing = [kind::LOOSE, kind::EXACT, kind::ORDER].map(|kind| (kind, piece()));
+    let announced = Announced {
+        glue: if glue.is_empty() { Vec::new() } else { vec![(0, glue.len() as u32)] },
+        trailing: trailing.map(|(kind, payload)| (kind, payload.len() as u32)).to_vec(),
+    };
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
     chunk::write(&mut bytes, kind::HEADER, &Header { grid, is_usual: true }.write());
+    chunk::write(&mut bytes, kind::ANNOUNCED, &announced.write());
     chunk::write(&mut bytes, kind::PASSES, &pass_table::write_passes(&passes));
-    for (pass, payload) in passes.iter().zip(payloads) {
+    for (i, (pass, payload)) in passes.iter().zip(payloads).enumerate() {
         let kind = match pass.action {
             Action::Base { .. } => kind::BASE,
             Action::Split => kind::SPLIT,
             Action::Refine => kind::REFINE,
         };
         chunk::write(&mut bytes, kind, payload);
+        if i == 0 && !glue.is_empty() {
+            chunk::write(&mut bytes, kind::GLUE, glue);
+        }
     }
+    trailing.iter().for_each(|(kind, payload)| chunk::write(&mut bytes, *kind, payload));
     bytes
 }
 
@@ -403,6 +455,10 @@ impl Input<'_> {
         self.bytes::<1>()[0]
     }
 
+    fn flag(&mut self) -> bool {
+        self.u8() % 2 == 1
+    }
+
     fn u16(&mut self) -> u16 {
         u16::from_le_bytes(self.bytes())
     }
@@ -420,6 +476,10 @@ fn options_from(input: &mut Input) -> EncodeOptions {
         levels: Some(u32::from(input.u8() % 16)).filter(|&levels| levels < 15),
         optimize: Optimize::ALL[usize::from(input.u8()) % Optimize::ALL.len()],
         steps_per_edge: Some(f64::from(1 + input.u8() % 64) * 0.5).filter(|&steps| steps > 2.0),
+        lossless: input.flag(),
+        keep_order: input.flag(),
+        keep_isolated: input.flag(),
+        keep_degenerate: input.flag(),
         window: Window { rings: 1 + u32::from(input.u8() % 4), ..Window::default() },
         growth: 1.0 + f64::from(input.u8() % 8),
         ..EncodeOptions::default()
@@ -460,7 +520,7 @@ fn cells_of(mesh: LevelMesh) -> Vec<CellTriangle> {
 }
 
 /// The usable triangles of `mesh` on the grid that the vertices they use span.
-fn quantised(mesh: &TriMesh, precision: u32) -> Vec<CellTriangle> {
+fn quantised(mesh: &TriMesh, precision: u32, side: f64) -> Vec<CellTriangle> {
     let usable = || mesh.triangles().iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
     let at = |v: u32| mesh.positions()[v as usize];
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -468,7 +528,9 @@ fn quantised(mesh: &TriMesh, precision: u32) -> Vec<CellTriangle> {
         low = std::array::from_fn(|a| low[a].min(p[a]));
         high = std::array::from_fn(|a| high[a].max(p[a]));
     }
-    let side = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
+    let longest = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
+    let magnitude = low.iter().chain(&high).fold(longest, |m, x| m.max(x.abs()));
+    assert!((side - longest).abs() <= 8.0 * f64::EPSILON * magnitude, "side {side} in place of {longest}");
     let steps = f64::from((1_u32 << precision) - 1);
     let cell = |v: u32| {
         std::array::from_fn(|a| {

@@ -66,7 +66,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     if args.verify {
         let start = Instant::now();
         let _spinner = ui.spinner("verifying");
-        verify::verify(&file.mesh, args.quantization, &encoded).with_context(|| name.clone())?;
+        verify::verify(&file.mesh, &args.options(), &encoded).with_context(|| name.clone())?;
         ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
     }
     destination.write(|out| out.write_all(&encoded.bytes))?;
@@ -222,6 +222,7 @@ impl Report<'_> {
             "isolated_vertices": repair.isolated_vertices,
             "repeated_vertices": repair.repeated_vertices,
             "passes": passes::to_json(info, self.num_bytes()),
+            "trailing": passes::trailing_to_json(info, self.num_bytes()),
         })
     }
 }

@@ -68,7 +68,7 @@ fn step(info: &StreamInfo) -> f64 {
 }
 
 fn header_bytes(info: &StreamInfo) -> u64 {
-    info.passes().first().map_or(0, |base| base.end - base.bytes)
+    info.passes().first().map_or(0, |base| base.end - base.bytes - base.glue_bytes - base.attribute_bytes)
 }
 
 fn passes_present(info: &StreamInfo, present: u64) -> usize {
@@ -131,5 +131,6 @@ fn to_json(info: &StreamInfo, name: &str, present: u64) -> Value {
         "growth": window.map(|w| w.2),
         "partition": partition(info),
         "passes": passes::to_json(info, present),
+        "trailing": passes::trailing_to_json(info, present),
     })
 }

@@ -191,5 +191,8 @@ pub fn note_if_incomplete(decoder: &Decoder, most_bytes: Option<u64>, name: &str
 pub fn reached(decoder: &Decoder) -> Option<String> {
     let (info, mesh) = (decoder.info()?, decoder.mesh()?);
     let (level, finest) = (mesh.level(), info.finest_level());
-    Some(format!("level {level} of {finest} at {} of {} bits", mesh.precision(), info.precision()))
+    let has_all_passes = decoder.passes_done() == info.passes().len();
+    let missing =
+        if has_all_passes && !decoder.is_complete() { ", before all that follows the passes" } else { "" };
+    Some(format!("level {level} of {finest} at {} of {} bits{missing}", mesh.precision(), info.precision()))
 }

@@ -30,6 +30,7 @@ pub fn to_json(info: &StreamInfo, present: u64) -> Value {
             "odd_share": odd_share(info, i),
             "bytes": pass.bytes,
             "attribute_bytes": pass.attribute_bytes,
+            "glue_bytes": pass.glue_bytes,
             "bits_per_vertex": bits_per_vertex(pass.bytes, info),
             "end": pass.end,
             "present": pass.end <= present,
@@ -79,6 +80,36 @@ pub fn print(mut out: impl Write, info: &StreamInfo, present: u64) -> io::Result
             pass.bytes,
             bits_per_vertex(pass.bytes, info),
         )?;
+        if pass.glue_bytes > 0 {
+            let end = pass.end;
+            writeln!(
+                out,
+                "      {:<48} {:>10} {:>8.3} {end:>11}{missing}",
+                "glue",
+                pass.glue_bytes,
+                bits_per_vertex(pass.glue_bytes, info)
+            )?;
+        }
+    }
+    for chunk in info.trailing() {
+        let (name, bytes, end) = (chunk.kind.name(), chunk.bytes, chunk.end);
+        let missing = if end <= present { "" } else { "  missing" };
+        let (bits, share) = (bits_per_vertex(bytes, info), 100.0 * end as f64 / total);
+        writeln!(out, "      {name:<48} {bytes:>10} {bits:>8.3} {end:>11} {share:>7.1}{missing}")?;
     }
     Ok(())
+}
+
+/// What follows the last pass: one object per chunk.
+pub fn trailing_to_json(info: &StreamInfo, present: u64) -> Value {
+    let row = |chunk: &lwc::TrailingInfo| {
+        json!({
+            "kind": chunk.kind.name(),
+            "bytes": chunk.bytes,
+            "bits_per_vertex": bits_per_vertex(chunk.bytes, info),
+            "end": chunk.end,
+            "present": chunk.end <= present,
+        })
+    };
+    info.trailing().iter().map(row).collect()
 }

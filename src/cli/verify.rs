@@ -1,21 +1,29 @@
-//! `lwc encode --verify`: the stream decodes to the mesh on the grid.
+//! `lwc encode --verify`: the stream decodes to the mesh on the grid, and to what else the options promise.
 //!
 //! Grid and comparison are written a second time here, so that encoder and decoder cannot agree on a mistake.
 
 use super::exit::Failure;
-use lwc::{Decoder, Encoded, Limits, TriMesh};
+use lwc::{Decoder, EncodeOptions, Encoded, Limits, TriMesh};
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Sizes of the pieces that the decoder gets, over and over: one byte, and lengths that divide nothing.
 const PIECES: [usize; 6] = [1, 3, 17, 997, 65_521, 7];
 
 /// Compares the triangles of the decoded stream with those of `mesh`, as multisets of oriented triples of
-/// grid cells.
+/// grid cells, and the vertices, each with all its triangles; with the options for it coordinates bit for bit
+/// and the order.
 ///
 /// # Errors
 /// If anything differs.
-pub fn verify(mesh: &TriMesh, precision: u32, encoded: &Encoded) -> Result<(), Failure> {
-    let decoder = decode(encoded).map_err(Failure::Verification)?;
-    compare(mesh, precision, encoded, &decoder).map_err(Failure::Verification)
+pub fn verify(mesh: &TriMesh, options: &EncodeOptions, encoded: &Encoded) -> Result<(), Failure> {
+    let check = || {
+        let decoder = decode(encoded)?;
+        let expected = Quantised::new(mesh, options, encoded.info.side());
+        compare_surface(&expected, options.quantization, encoded, &decoder)?;
+        let decoded = decoder.mesh().ok_or("there is no mesh")?.to_tri_mesh();
+        compare_whole(&kept(mesh, options), &decoded, &expected, options)
+    };
+    check().map_err(Failure::Verification)
 }
 
 fn decode(encoded: &Encoded) -> Result<Decoder, String> {
@@ -48,8 +56,12 @@ fn decode(encoded: &Encoded) -> Result<Decoder, String> {
     Ok(decoder)
 }
 
-fn compare(mesh: &TriMesh, precision: u32, encoded: &Encoded, decoder: &Decoder) -> Result<(), String> {
-    let expected = Quantised::new(mesh, precision);
+fn compare_surface(
+    expected: &Quantised,
+    precision: u32,
+    encoded: &Encoded,
+    decoder: &Decoder,
+) -> Result<(), String> {
     let decoded = decoder.mesh().ok_or("there is no mesh")?;
     let info = &encoded.info;
     let same_grid = info.side() == expected.side && info.origin() == expected.origin;
@@ -73,12 +85,84 @@ fn compare(mesh: &TriMesh, precision: u32, encoded: &Encoded, decoder: &Decoder)
     Ok(())
 }
 
+/// Compares all vertices and faces, without their order or with it.
+fn compare_whole(
+    mesh: &TriMesh,
+    decoded: &TriMesh,
+    grid: &Quantised,
+    options: &EncodeOptions,
+) -> Result<(), String> {
+    let sizes = |mesh: &TriMesh| (mesh.num_vertices(), mesh.num_triangles());
+    if sizes(mesh) != sizes(decoded) {
+        let ((v, f), (n, m)) = (sizes(decoded), sizes(mesh));
+        return Err(format!("{v} vertices and {f} faces in place of {n} and {m}"));
+    }
+    let place = |p: [f64; 3]| match options.lossless {
+        true => p.map(f64::to_bits),
+        false => grid.cell(p).map(|c| c as u64),
+    };
+    let [wanted, found]: [Vec<[u64; 3]>; 2] =
+        [mesh, decoded].map(|mesh| mesh.positions().iter().map(|&p| place(p)).collect());
+    if options.keep_order && (wanted != found || mesh.triangles() != decoded.triangles()) {
+        return Err("the order of vertices or faces differs".into());
+    }
+    // Where the grid is finer than doubles, places do not tell cells.
+    let magnitude = grid.origin.iter().fold(grid.side + f64::MIN_POSITIVE, |m, o| m.max(o.abs()));
+    let is_told = options.lossless || grid.side / grid.steps > 8.0 * f64::EPSILON * magnitude;
+    if is_told && stars(mesh, &wanted) != stars(decoded, &found) {
+        return Err("vertices have other faces".into());
+    }
+    Ok(())
+}
+
+/// What a stream keeps of a mesh.
+fn kept(mesh: &TriMesh, options: &EncodeOptions) -> TriMesh {
+    let is_kept = |t: &&[u32; 3]| options.keep_degenerate || is_usable(t);
+    let faces: Vec<[u32; 3]> = mesh.triangles().iter().filter(is_kept).copied().collect();
+    let mut is_named = vec![options.keep_isolated; mesh.num_vertices()];
+    faces.iter().flatten().for_each(|&v| is_named[v as usize] = true);
+    let mut name = vec![0; mesh.num_vertices()];
+    let vertices = (0..mesh.num_vertices()).filter(|&v| is_named[v]);
+    let positions: Vec<[f64; 3]> = vertices
+        .enumerate()
+        .map(|(i, v)| {
+            name[v] = i as u32;
+            mesh.positions()[v]
+        })
+        .collect();
+    let faces = faces.into_iter().map(|t| t.map(|v| name[v as usize])).collect();
+    TriMesh::new(positions, faces).unwrap_or_default()
+}
+
+/// For each vertex a hash of its place and of the places of all its faces, sorted.
+fn stars(mesh: &TriMesh, places: &[[u64; 3]]) -> Vec<u64> {
+    let hash = |what: &dyn Fn(&mut DefaultHasher)| {
+        let mut hasher = DefaultHasher::new();
+        what(&mut hasher);
+        hasher.finish()
+    };
+    let mut stars: Vec<u64> = places.iter().map(|place| hash(&|h| place.hash(h))).collect();
+    for &[a, b, c] in mesh.triangles() {
+        for [v, n, p] in [[a, b, c], [b, c, a], [c, a, b]] {
+            let corner = hash(&|h| (places[n as usize], places[p as usize]).hash(h));
+            stars[v as usize] = stars[v as usize].wrapping_add(corner);
+        }
+    }
+    stars.sort_unstable();
+    stars
+}
+
+fn is_usable(&[a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
 type Cell = [i32; 3];
 
 /// A mesh on the grid.
 struct Quantised {
     origin: [f64; 3],
     side: f64,
+    steps: f64,
     /// Vertices that usable faces have.
     num_vertices: usize,
     /// Usable faces, see [`sorted`].
@@ -87,33 +171,43 @@ struct Quantised {
 
 impl Quantised {
     /// g = floor((x − min)·(2^q − 1)/s + ½) per axis: min per axis and s the longest side, both over the
-    /// vertices of the faces with three different vertices.
-    fn new(mesh: &TriMesh, precision: u32) -> Self {
-        let usable = || mesh.triangles().iter().filter(|[a, b, c]| a != b && b != c && c != a);
+    /// vertices of the faces with three different vertices and what else is kept. `side` is s as the stream has
+    /// it, if it differs by the rounding of coordinates only.
+    fn new(mesh: &TriMesh, options: &EncodeOptions, side: f64) -> Self {
+        let usable = || mesh.triangles().iter().filter(|t| is_usable(t));
+        let in_stream = kept(mesh, options);
         let mut is_used = vec![false; mesh.num_vertices()];
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for &vertex in usable().flatten() {
-            is_used[vertex as usize] = true;
-            for (axis, &x) in mesh.positions()[vertex as usize].iter().enumerate() {
+        usable().flatten().for_each(|&vertex| is_used[vertex as usize] = true);
+        for position in in_stream.positions() {
+            for (axis, &x) in position.iter().enumerate() {
                 low[axis] = low[axis].min(x);
                 high[axis] = high[axis].max(x);
             }
         }
-        let side = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-        let steps = ((1_u64 << precision) - 1) as f64;
-        let cell = |vertex: u32| -> Cell {
-            let position = mesh.positions()[vertex as usize];
-            std::array::from_fn(|axis| {
-                let offset = position[axis] - low[axis];
-                let scaled = offset * steps / side;
-                // Near the largest double the product overflows where the quotient does not.
-                let scaled = if scaled.is_finite() { scaled } else { offset / side * steps };
-                if side == 0.0 { 0 } else { (scaled + 0.5).floor() as i32 }
-            })
+        let longest = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+        let magnitude = low.iter().chain(&high).fold(longest, |m, x| m.max(x.abs()));
+        let is_close = (side - longest).abs() <= 8.0 * f64::EPSILON * magnitude;
+        let mut quantised = Self {
+            origin: low,
+            side: if is_close { side } else { longest },
+            steps: ((1_u64 << options.quantization) - 1) as f64,
+            num_vertices: is_used.iter().filter(|&&used| used).count(),
+            triangles: Vec::new(),
         };
-        let triangles = sorted(usable().map(|t| t.map(cell)));
-        let num_vertices = is_used.iter().filter(|&&used| used).count();
-        Self { origin: low, side, num_vertices, triangles }
+        let cell = |vertex: u32| quantised.cell(mesh.positions()[vertex as usize]);
+        quantised.triangles = sorted(usable().map(|t| t.map(cell)));
+        quantised
+    }
+
+    fn cell(&self, position: [f64; 3]) -> Cell {
+        std::array::from_fn(|axis| {
+            let offset = position[axis] - self.origin[axis];
+            let scaled = offset * self.steps / self.side;
+            // Near the largest double the product overflows where the quotient does not.
+            let scaled = if scaled.is_finite() { scaled } else { offset / self.side * self.steps };
+            if self.side == 0.0 { 0 } else { (scaled + 0.5).floor() as i32 }
+        })
     }
 }
 
@@ -157,6 +251,29 @@ mod tests {
 
     fn encoded(mesh: &TriMesh) -> Encoded {
         lwc::encode(mesh, &EncodeOptions::default()).unwrap()
+    }
+
+    fn verify(mesh: &TriMesh, precision: u32, encoded: &Encoded) -> Result<(), Failure> {
+        let mut options = EncodeOptions::default();
+        options.quantization = precision;
+        super::verify(mesh, &options, encoded)
+    }
+
+    #[test]
+    fn what_options_promise_is_looked_at() {
+        let (mut positions, mut triangles) = bumpy_grid();
+        positions.push([1e3, 0.0, -0.0]);
+        triangles.extend([[0, 0, 144], [0, 12, 30]]);
+        let mesh = mesh(positions, triangles);
+        let mut options = EncodeOptions::default();
+        let without = encoded(&mesh);
+        (options.lossless, options.keep_order) = (true, true);
+        assert!(super::verify(&mesh, &options, &without).is_err());
+        (options.keep_isolated, options.keep_degenerate) = (true, true);
+        super::verify(&mesh, &options, &lwc::encode(&mesh, &options).unwrap()).unwrap();
+        options.keep_order = false;
+        super::verify(&mesh, &options, &lwc::encode(&mesh, &options).unwrap()).unwrap();
+        assert!(super::verify(&mesh, &options, &without).is_err());
     }
 
     #[test]

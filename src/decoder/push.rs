@@ -150,6 +150,9 @@ impl Decoder {
     /// Applies the next pass if all its bytes are there: one pass at a time, for callers who want to
     /// see every mesh or to do something in between.
     ///
+    /// Chunks beside the passes, those behind the last one among them, are taken on the way and give no update;
+    /// [`LevelMesh::to_tri_mesh`] and [`Decoder::is_complete`] tell of them.
+    ///
     /// # Errors
     /// As [`Decoder::push`].
     pub fn step(&mut self) -> Result<Option<Update>, DecodeError> {

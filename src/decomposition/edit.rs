@@ -50,7 +50,11 @@ fn list(counts: &[usize]) -> String {
 #[derive(Clone, Debug)]
 pub struct Edition {
     level: usize,
+    /// Cut where it is not manifold.
     coarse: TriMesh,
+    /// The same joined, and the joined vertex of each vertex of the finest mesh.
+    whole: TriMesh,
+    joined: Vec<u32>,
     /// From the coarse mesh as decoded to the positions its vertices have in the finest mesh, in the
     /// frames of the vertices.
     refinements: Vec<DVec3>,
@@ -63,7 +67,7 @@ impl Edition {
     /// # Errors
     /// If the stream is damaged, incomplete or beyond `limits`, or no level has as many vertices.
     pub fn new(bytes: &[u8], num_vertices: usize, limits: Limits) -> Result<Self, EditError> {
-        let StreamTower { tower, coarse, fine } = Tower::of_stream(bytes, num_vertices, limits)?;
+        let StreamTower { tower, coarse, fine, joined } = Tower::of_stream(bytes, num_vertices, limits)?;
         let finest_level = crate::StreamInfo::read(bytes)?.map_or(0, |info| info.finest_level() as usize);
         let level = finest_level - tower.num_levels();
         let (low, high) = fine.bounding_box().ok_or(EditError::Incomplete)?;
@@ -76,7 +80,8 @@ impl Edition {
         decomposition.source = (0..fine.num_vertices() as u32).collect();
         decomposition.input = fine;
         decomposition.unit = unit;
-        Ok(Self { level, coarse, refinements, decomposition })
+        let whole = join(&coarse, &joined);
+        Ok(Self { level, coarse, whole, joined, refinements, decomposition })
     }
 
     /// The level that may be changed.
@@ -86,7 +91,7 @@ impl Edition {
 
     /// The mesh to change: what a decoder of that level gives.
     pub fn coarse(&self) -> &TriMesh {
-        &self.coarse
+        &self.whole
     }
 
     /// Puts the details back on `changed`, the coarse mesh with vertices moved: each detail keeps its
@@ -96,19 +101,22 @@ impl Edition {
     /// If `changed` has other vertices or faces than the level.
     pub fn apply(mut self, changed: &TriMesh) -> Result<TriMesh, EditError> {
         self.check(changed)?;
-        let places = points(changed, self.decomposition.unit);
+        let positions = changed.positions();
+        let cut = self.joined[..self.coarse.num_vertices()].iter().map(|&v| positions[v as usize]).collect();
+        let changed = TriMesh::from_valid_parts(cut, self.coarse.triangles().to_vec());
+        let places = points(&changed, self.decomposition.unit);
         let frames = Frames::new(&self.coarse, &places);
         let refined = places.iter().enumerate().map(|(v, &p)| p + frames.to_model(v, self.refinements[v]));
         self.decomposition.base = refined.collect();
-        Ok(self.decomposition.reconstruct())
+        Ok(join(&self.decomposition.reconstruct(), &self.joined))
     }
 
     fn check(&self, changed: &TriMesh) -> Result<(), EditError> {
-        if changed.num_vertices() != self.coarse.num_vertices() {
-            let levels = vec![self.coarse.num_vertices()];
+        if changed.num_vertices() != self.whole.num_vertices() {
+            let levels = vec![self.whole.num_vertices()];
             return Err(EditError::Vertices { found: changed.num_vertices(), levels });
         }
-        let (ours, theirs) = (sorted(&self.coarse), sorted(changed));
+        let (ours, theirs) = (sorted(&self.whole), sorted(changed));
         let differing = ours.iter().filter(|t| theirs.binary_search(t).is_err()).count();
         if differing > 0 || ours.len() != theirs.len() {
             let (expected, found) = (ours.len(), theirs.len());
@@ -123,6 +131,18 @@ fn points(mesh: &TriMesh, unit: f64) -> Vec<DVec3> {
 }
 
 /// Faces with the smallest corner first, in order.
+/// The mesh with its vertices joined, as a decoder does: `joined` are numbered as they come.
+fn join(mesh: &TriMesh, joined: &[u32]) -> TriMesh {
+    let mut positions: Vec<[f64; 3]> = Vec::new();
+    for (&place, &position) in joined.iter().zip(mesh.positions()) {
+        if place as usize == positions.len() {
+            positions.push(position);
+        }
+    }
+    let triangles = mesh.triangles().iter().map(|t| t.map(|v| joined[v as usize]));
+    TriMesh::from_valid_parts(positions, triangles.filter(|&[a, b, c]| a != b && b != c && c != a).collect())
+}
+
 fn sorted(mesh: &TriMesh) -> Vec<[u32; 3]> {
     let turned = |&[a, b, c]: &[u32; 3]| [a, b, c].min([b, c, a]).min([c, a, b]);
     let mut triangles: Vec<[u32; 3]> = mesh.triangles().iter().map(turned).collect();

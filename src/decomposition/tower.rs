@@ -33,8 +33,11 @@ pub(super) struct MeshTower {
 pub(super) struct StreamTower {
     pub(super) tower: Tower,
     /// The coarse mesh as a decoder of that level gives it, and the finest mesh.
+    /// Both cut where they are not manifold.
     pub(super) coarse: TriMesh,
     pub(super) fine: TriMesh,
+    /// For each vertex of the finest mesh the one that it is when joined; those of the coarse mesh come first.
+    pub(super) joined: Vec<u32>,
 }
 
 impl Tower {
@@ -89,7 +92,7 @@ impl Tower {
         })
     }
 
-    /// The levels of a stream from `num_vertices` vertices on.
+    /// The levels of a stream from `num_vertices` joined vertices on.
     ///
     /// # Errors
     /// If the stream is damaged, incomplete or beyond the limits, or no level has as many vertices.
@@ -101,7 +104,7 @@ impl Tower {
         let mut decoder = Decoder::new(limits);
         decoder.feed(bytes)?;
         let mut tower = Self::default();
-        let mut coarse = None;
+        let mut coarse: Vec<TriMesh> = Vec::new();
         let mut counts = Vec::new();
         while let Some(update) = decoder.step()? {
             let Some(mesh) = decoder.mesh() else { continue };
@@ -111,16 +114,26 @@ impl Tower {
                     tower.levels.push((mesh.num_vertices(), mesh.triangles().to_vec()));
                 }
             }
-            if mesh.num_vertices() == num_vertices {
-                coarse = Some(mesh.to_cut_mesh());
+            // Only in the end it is known how many vertices are the same.
+            let may_be_it = mesh.num_vertices() >= num_vertices && mesh.num_vertices() <= 8 * num_vertices;
+            if may_be_it {
+                coarse.pop_if(|last| last.num_vertices() == mesh.num_vertices());
+                coarse.push(mesh.to_cut_mesh());
             }
         }
         if !decoder.is_complete() {
             return Err(EditError::Incomplete);
         }
-        let fine = decoder.mesh().ok_or(EditError::Incomplete)?.to_cut_mesh();
-        let coarse = coarse.ok_or(EditError::Vertices { found: num_vertices, levels: counts })?;
-        Ok(StreamTower { tower, coarse, fine })
+        let mesh = decoder.mesh().ok_or(EditError::Incomplete)?;
+        let (fine, (joined, _)) = (mesh.to_cut_mesh(), mesh.joined_vertices());
+        // Joined vertices are numbered as they come.
+        let num_joined = |count: usize| joined[..count].iter().max().map_or(0, |&last| last as usize + 1);
+        let is_it = |count: usize| num_joined(count) == num_vertices;
+        tower.levels.retain(|&(count, _)| num_joined(count) >= num_vertices);
+        let coarse = coarse.into_iter().find(|coarse| is_it(coarse.num_vertices()));
+        let levels = || counts.iter().map(|&count| num_joined(count)).collect();
+        let coarse = coarse.ok_or_else(|| EditError::Vertices { found: num_vertices, levels: levels() })?;
+        Ok(StreamTower { tower, coarse, fine, joined })
     }
 
     /// Rings of the vertices that M^{level+1} has beyond M^level, counter-clockwise; an open one goes

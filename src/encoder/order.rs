@@ -92,10 +92,14 @@ struct Ties<'a> {
     order: Vec<u32>,
 }
 
-/// Rounds in which all vertices look at their neighbours.
+/// Rounds in which all vertices look at their neighbours, before it is seen whether that tells more apart;
+/// a multiple of them at most.
 const ROUNDS: usize = 4;
+const MOST_ROUNDS: usize = 16 * ROUNDS;
 /// Vertices that may be looked at to tell the rest apart, times the vertices there are.
 const BUDGET: usize = 100;
+/// Triangles and vertices that may be looked at in any case.
+const SMALL_WORK: usize = 1 << 25;
 
 impl<'a> Ties<'a> {
     /// `codes` ascend.
@@ -106,7 +110,8 @@ impl<'a> Ties<'a> {
     }
 
     fn resolve(mut self) -> Vec<u32> {
-        for _ in 0..ROUNDS {
+        let mut num_kinds = 0;
+        for round in 1..=MOST_ROUNDS.max(SMALL_WORK / self.triangles.len()) {
             let mut sum = vec![0_u64; self.hash.len()];
             for &[a, b, c] in self.triangles {
                 for [v, n, p] in [[a, b, c], [b, c, a], [c, a, b]] {
@@ -115,8 +120,14 @@ impl<'a> Ties<'a> {
                 }
             }
             self.hash.iter_mut().zip(sum).for_each(|(hash, sum)| *hash = mix(*hash ^ mix(sum)));
+            if round % ROUNDS == 0 {
+                self.sort();
+                let before = std::mem::replace(&mut num_kinds, self.num_kinds());
+                if num_kinds == self.order.len() || num_kinds == before {
+                    break;
+                }
+            }
         }
-        self.sort();
         if self.first_tie(0).is_some() {
             self.tell_apart();
         }
@@ -126,6 +137,12 @@ impl<'a> Ties<'a> {
     /// What a corner tells the vertex at it: its two other vertices, in their order.
     fn corner(&self, n: u32, p: u32) -> u64 {
         mix(self.hash[n as usize].rotate_left(20).wrapping_add(mix(self.hash[p as usize])))
+    }
+
+    /// Vertices that look different, once they are sorted.
+    fn num_kinds(&self) -> usize {
+        let look = |v: u32| (self.codes[v as usize], self.hash[v as usize]);
+        1 + self.order.windows(2).filter(|pair| look(pair[0]) != look(pair[1])).count()
     }
 
     fn key(&self, v: u32) -> (u128, u64, u32) {
@@ -149,7 +166,7 @@ impl<'a> Ties<'a> {
     /// the first.
     fn tell_apart(&mut self) {
         let corners = CornersAt::new(self.triangles, self.hash.len());
-        let mut budget = BUDGET * self.hash.len();
+        let mut budget = (BUDGET * self.hash.len()).max(SMALL_WORK);
         let mut seen = vec![0_u32; self.hash.len()];
         let mut start = 0;
         for stamp in 1.. {
@@ -175,10 +192,20 @@ impl<'a> Ties<'a> {
                 self.look_around(&changed[ring.clone()], &corners);
                 rings.push(ring.clone());
             }
-            // Once more from near to far, so that what lies beside each other is told apart as well.
-            rings.into_iter().for_each(|ring| self.look_around(&changed[ring], &corners));
-            let Some(left) = budget.checked_sub(4 * changed.len()) else { return };
-            budget = left;
+            // Again from near to far, as long as that tells more apart.
+            let mut num_kinds = 0;
+            loop {
+                rings.iter().for_each(|ring| self.look_around(&changed[ring.clone()], &corners));
+                let mut kinds: Vec<u64> = changed.iter().map(|&v| self.hash[v as usize]).collect();
+                kinds.sort_unstable();
+                kinds.dedup();
+                let before = std::mem::replace(&mut num_kinds, kinds.len());
+                let Some(left) = budget.checked_sub(changed.len()) else { return };
+                budget = left;
+                if num_kinds == changed.len() || num_kinds == before {
+                    break;
+                }
+            }
             start = self.sort_some(&changed).min(tie);
         }
     }

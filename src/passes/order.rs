@@ -143,8 +143,10 @@ impl Picker {
     }
 
     fn consider(&mut self, it: u32) {
-        let is_new = !self.is_done[it as usize] && !self.candidates.contains(&it);
-        if is_new && self.candidates.len() < MOST_CANDIDATES {
+        if self.candidates.len() == MOST_CANDIDATES || self.is_done[it as usize] {
+            return;
+        }
+        if !self.candidates.contains(&it) {
             self.candidates.push(it);
         }
     }

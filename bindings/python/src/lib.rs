@@ -31,7 +31,8 @@ fn descriptors() -> Vec<&'static str> {
 /// `lwc encode`. Returns the stream.
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, descriptor=None, quantization=None, levels=None, rings=None,
-    radius=None, growth=None, partition=None, optimize=None, steps_per_edge=None))]
+    radius=None, growth=None, partition=None, optimize=None, steps_per_edge=None,
+    lossless=false, keep_order=false, keep_isolated=false, keep_degenerate=false))]
 #[allow(clippy::too_many_arguments)] // They are keywords in Python.
 fn encode<'py>(
     py: Python<'py>,
@@ -46,6 +47,10 @@ fn encode<'py>(
     partition: Option<&str>,
     optimize: Option<&str>,
     steps_per_edge: Option<f64>,
+    lossless: bool,
+    keep_order: bool,
+    keep_isolated: bool,
+    keep_degenerate: bool,
 ) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
     let mut options = EncodeOptions::default();
     if let Some(name) = descriptor {
@@ -66,6 +71,10 @@ fn encode<'py>(
     options.levels = levels.or(options.levels);
     options.growth = growth.unwrap_or(options.growth);
     options.steps_per_edge = steps_per_edge.or(options.steps_per_edge);
+    options.lossless = lossless;
+    options.keep_order = keep_order;
+    options.keep_isolated = keep_isolated;
+    options.keep_degenerate = keep_degenerate;
 
     let mesh = tri_mesh(py, vertices, faces)?;
     let encoded = py.detach(|| lwc::encode(&mesh, &options)).map_err(|error| encode_error(py, error))?;
