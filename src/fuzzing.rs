@@ -372,7 +372,7 @@ fn made_up(data: &[u8]) -> Vec<u8> {
     }
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
-    chunk::write(&mut bytes, kind::HEADER, &Header { grid, is_usual: true }.write());
+    chunk::write(&mut bytes, kind::HEADER, &Header { grid, is_usual: true, profile: 0 }.write());
     chunk::write(&mut bytes, kind::PASSES, &pass_table::write_passes(&passes));
     for (pass, payload) in passes.iter().zip(payloads) {
         let kind = match pass.action {

@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 20] = [
+const LAYERS: [(&str, &[&str]); 21] = [
     ("error", &[]),
     ("limits", &["error"]),
     ("lanes", &[]),
+    ("profile", &[]),
     ("bitstream", &["lanes"]),
     ("mesh", &[]),
     ("io", &["mesh"]),
@@ -21,7 +22,7 @@ const LAYERS: [(&str, &[&str]); 20] = [
     ("partition", &["mesh", "simplify"]),
     ("descent", &["descriptors", "levels", "mesh", "partition", "simplify"]),
     ("passes", &["bitstream", "lanes", "lifting", "mesh"]),
-    ("decoder", &["bitstream", "error", "limits", "mesh", "passes"]),
+    ("decoder", &["bitstream", "error", "limits", "mesh", "passes", "profile"]),
     (
         "encoder",
         &[
@@ -34,6 +35,7 @@ const LAYERS: [(&str, &[&str]); 20] = [
             "mesh",
             "partition",
             "passes",
+            "profile",
             "simplify",
         ],
     ),

@@ -24,6 +24,7 @@ impl Encode {
         options.levels = self.levels.0;
         options.partition = self.partition;
         options.optimize = self.optimize;
+        options.profile = self.profile;
         options.steps_per_edge = self.steps_per_edge;
         options
     }
@@ -185,6 +186,7 @@ impl Report<'_> {
             "growth": args.growth,
             "partition": args.partition.name(),
             "optimize": args.optimize.name(),
+            "profile": args.profile.name(),
             "steps_per_edge": args.steps_per_edge,
             "read_seconds": self.read_seconds,
             "encode_seconds": self.encode_seconds,

@@ -9,7 +9,7 @@ use crate::bitstream::header::{Header, Provenance};
 use crate::limits::Limits;
 use crate::passes::GridMesh;
 use crate::passes::work::Work;
-use crate::{DecodeError, TriMesh};
+use crate::{DecodeError, Profile, TriMesh};
 use std::ops::Range;
 
 /// What one finished pass changed.
@@ -60,6 +60,7 @@ pub struct Decoder {
     frames: FrameReader,
     header: Option<Header>,
     provenance: Option<Provenance>,
+    profile: Profile,
     info: Option<StreamInfo>,
     /// Passes done.
     done: usize,
@@ -84,6 +85,7 @@ impl Decoder {
             frames: FrameReader::new(),
             header: None,
             provenance: None,
+            profile: Profile::default(),
             info: None,
             done: 0,
             passes: PassDecoder::new(),
@@ -204,6 +206,9 @@ impl Decoder {
             match (chunk.kind, &self.header) {
                 (kind::HEADER, None) => {
                     let header = Header::read(payload).ok_or(malformed("the header"))?;
+                    let profile = Profile::from_code(header.profile).filter(|profile| profile.is_supported());
+                    let profile = profile.ok_or_else(|| unsupported_profile(header.profile))?;
+                    self.profile = profile;
                     let usual = header.is_usual.then_some(Provenance::USUAL);
                     self.provenance = self.provenance.or(usual);
                     self.header = Some(header);
@@ -211,7 +216,8 @@ impl Decoder {
                 (kind::PASSES, Some(Header { grid, .. })) => {
                     let passes = frame::list_passes(payload, grid, self.frames.position());
                     let passes = passes.map_err(|e| malformed(e.0))?;
-                    self.info = Some(StreamInfo { grid: *grid, provenance: self.provenance, passes });
+                    let (provenance, profile) = (self.provenance, self.profile);
+                    self.info = Some(StreamInfo { grid: *grid, provenance, profile, passes });
                 }
                 (kind::PROVENANCE, _) => self.provenance = Provenance::read(payload),
                 (kind::HEADER | kind::PASSES, _) => return Err(out_of_order(&chunk)),
@@ -226,7 +232,9 @@ impl Decoder {
         let pass = self.next_pass().ok_or(malformed("a pass that was not announced"))?;
         let payload = self.frames.payload(&chunk);
         passes::check_limits(pass, &self.limits, self.frames.buffered())?;
-        self.advance(Running::new(payload), chunk, work)
+        let running =
+            Running::new(payload, pass, self.profile).ok_or(malformed("a pass of other streams"))?;
+        self.advance(running, chunk, work)
     }
 
     /// Goes on with the next pass.
@@ -289,7 +297,9 @@ impl Decoder {
     }
 
     fn mesh_with_cut(&self) -> Option<(&PassInfo, GridMesh)> {
-        let pass = self.next_pass().filter(|_| self.running.is_none())?;
+        // Streams that are compressed begin to tell only when they are whole.
+        let is_readable = self.running.is_none() && self.profile != Profile::Fast;
+        let pass = self.next_pass().filter(|_| is_readable)?;
         let payload = self.frames.cut_pass(Some(pass.frame()))?;
         // The coder reads four bytes ahead: fewer decide nothing.
         if self.failed || payload.len() < 5 {
@@ -316,6 +326,14 @@ impl Decoder {
     pub fn is_complete(&self) -> bool {
         self.info.is_some() && self.next_pass().is_none()
     }
+}
+
+fn unsupported_profile(code: u8) -> DecodeError {
+    let what = match Profile::from_code(code) {
+        Some(profile) => format!("profile {}, which this decoder was built without", profile.name()),
+        None => format!("profile {code}"),
+    };
+    DecodeError::Unsupported(what)
 }
 
 fn out_of_order(chunk: &Chunk) -> DecodeError {

@@ -3,7 +3,7 @@
 use crate::descent::MAX_LEVELS;
 use crate::descriptors::{Descriptor, Window};
 use crate::mesh::repair::RepairReport;
-use crate::{EncodeError, Optimize, Partition, StreamInfo};
+use crate::{EncodeError, Optimize, Partition, Profile, StreamInfo};
 
 /// How to encode. `Default` gives the defaults named below.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +26,8 @@ pub struct EncodeOptions {
     /// Grid steps to the mean edge of a level, from which its precision follows; `None` follows the
     /// error of each level instead, which makes better prefixes. Default `None`.
     pub steps_per_edge: Option<f64>,
+    /// How the passes are coded. Default small.
+    pub profile: Profile,
 }
 
 impl Default for EncodeOptions {
@@ -39,6 +41,7 @@ impl Default for EncodeOptions {
             partition: Partition::default(),
             optimize: Optimize::default(),
             steps_per_edge: None,
+            profile: Profile::default(),
         }
     }
 }
@@ -51,6 +54,9 @@ impl EncodeOptions {
         }
         if self.levels.is_some_and(|n| n > MAX_LEVELS) {
             return fail("levels", self.levels.unwrap_or(0).to_string(), "0 to 128");
+        }
+        if !self.profile.is_supported() {
+            return fail("profile", self.profile.name().to_owned(), "one that this build supports");
         }
         if !(1..=64).contains(&self.window.rings) {
             return fail("rings", self.window.rings.to_string(), "1 to 64");

@@ -3,17 +3,21 @@
 use super::analysis::{ANALYSIS_SHARE, Hierarchy};
 use super::options::{EncodeOptions, Progress};
 use super::schedule::{Schedule, Step};
+use crate::Profile;
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::header::{Action, Grid, Header, MAX_VERTICES_PER_BYTE, Pass, Provenance};
 use crate::bitstream::pass_table;
-use crate::bitstream::range_coder::RangeEncoder;
+use crate::bitstream::range_coder::{BitCoder, RangeEncoder};
+use crate::bitstream::streams::StreamWriter;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::passes::GridMesh;
 use crate::passes::base::{self, BaseTarget};
 use crate::passes::connectivity::{self, ConnectivityModels, ConnectivityTarget, NOT_IN_PATCH};
 use crate::passes::coordinates::{self, CoordinateModels};
 use crate::passes::patch::{Patches, Star, StarBuilder};
+use crate::passes::plain;
 use crate::passes::refine::{self, RefineModels};
+use crate::passes::work::Work;
 use crate::simplify::LevelRecord;
 use std::collections::HashMap;
 
@@ -26,7 +30,8 @@ pub(super) fn write(
     options: &EncodeOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Vec<u8> {
-    let mut writer = PassWriter::new(hierarchy, cells, grid.precision, schedule.base_precision);
+    let mut writer =
+        PassWriter::new(hierarchy, cells, options.profile, grid.precision, schedule.base_precision);
     for step in &schedule.steps {
         let fraction = writer.mesh.positions.len() as f64 / hierarchy.num_vertices as f64;
         progress(Progress { stage: "passes", fraction: ANALYSIS_SHARE + (1.0 - ANALYSIS_SHARE) * fraction });
@@ -57,7 +62,11 @@ fn assemble(
     };
     let has_levels = !hierarchy.records.is_empty();
     let is_usual = has_levels && provenance == Provenance::USUAL;
-    chunk::write(&mut bytes, kind::HEADER, &Header { grid: *grid, is_usual }.write());
+    chunk::write(
+        &mut bytes,
+        kind::HEADER,
+        &Header { grid: *grid, is_usual, profile: options.profile as u8 }.write(),
+    );
     if has_levels && !is_usual {
         chunk::write(&mut bytes, kind::PROVENANCE, &provenance.write());
     }
@@ -72,6 +81,7 @@ fn assemble(
 /// The decoder's state, and how its numbering maps to that of the full surface.
 struct PassWriter<'a> {
     cells: &'a [[i32; 3]],
+    profile: Profile,
     full_precision: u32,
     precision: u32,
     mesh: GridMesh,
@@ -88,7 +98,13 @@ struct PassWriter<'a> {
 }
 
 impl<'a> PassWriter<'a> {
-    fn new(hierarchy: &Hierarchy, cells: &'a [[i32; 3]], full_precision: u32, precision: u32) -> Self {
+    fn new(
+        hierarchy: &Hierarchy,
+        cells: &'a [[i32; 3]],
+        profile: Profile,
+        full_precision: u32,
+        precision: u32,
+    ) -> Self {
         let hidden = full_precision - precision;
         let positions: Vec<[i32; 3]> =
             hierarchy.base_vertices.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)).collect();
@@ -99,6 +115,7 @@ impl<'a> PassWriter<'a> {
         let coded = expect_sound(coded);
         let mut writer = Self {
             cells,
+            profile,
             full_precision,
             precision,
             mesh: coded.mesh,
@@ -122,12 +139,11 @@ impl<'a> PassWriter<'a> {
             faces: num_faces as u32,
             bytes: 0,
         };
-        writer.finish_pass(row, num_vertices.max(num_faces), coder);
+        writer.finish_pass(row, num_vertices.max(num_faces), coder.finish());
         writer
     }
 
-    fn finish_pass(&mut self, mut row: Pass, touched: usize, coder: RangeEncoder) {
-        let mut payload = coder.finish();
+    fn finish_pass(&mut self, mut row: Pass, touched: usize, mut payload: Vec<u8>) {
         // A decoder refuses more vertices than the bytes could plausibly hold.
         let least = touched.div_ceil(MAX_VERTICES_PER_BYTE as usize).saturating_sub(1);
         payload.resize(payload.len().max(least), 0);
@@ -140,46 +156,74 @@ impl<'a> PassWriter<'a> {
         let hidden = self.full_precision - self.precision;
         let target: Vec<[i32; 3]> =
             self.vertex_source.iter().map(|&v| self.cells[v as usize].map(|c| c >> hidden)).collect();
-        let mut coder = RangeEncoder::new();
-        refine::code(&mut coder, &mut self.refine, &mut self.mesh, Some(&target));
+        let payload = match self.profile {
+            Profile::Small => {
+                let mut coder = RangeEncoder::new();
+                refine::code(&mut coder, &mut self.refine, &mut self.mesh, Some(&target));
+                coder.finish()
+            }
+            Profile::Fast => {
+                let mut coder = StreamWriter::new();
+                let positions = &mut self.mesh.positions;
+                positions.iter_mut().flatten().for_each(|c| *c *= 2);
+                plain::refine_some(&mut coder, positions, &mut 0, Some(&target), &mut Work::unlimited());
+                coder.finish()
+            }
+        };
         debug_assert_eq!(self.mesh.positions, target);
         let row = Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 0 };
-        self.finish_pass(row, target.len(), coder);
+        self.finish_pass(row, target.len(), payload);
     }
 
     fn split(&mut self, record: &LevelRecord) {
-        let target = self.connectivity_target(record);
-        let mut coder = RangeEncoder::new();
-        let patches =
-            connectivity::code(&mut coder, &mut self.connectivity, &self.mesh, record.len(), Some(&target));
-        let patches = expect_sound(patches);
-        let odd: Vec<u32> = (0..patches.len()).map(|j| odd_of(&target, &patches, j)).collect();
-        drop(target);
-
-        let num_coarse = self.mesh.positions.len();
         let num_faces = self.mesh.surface.triangles.len();
-        let mut builder = StarBuilder::new(num_coarse);
-        for (j, &odd) in odd.iter().enumerate() {
-            let star = expect_sound(builder.restore(&mut self.mesh.surface, &patches, j));
-            let removed = record.get(odd as usize);
-            self.face_source.resize(self.mesh.surface.triangles.len(), 0);
-            name_faces(star, &removed, &self.vertex_source, &mut self.face_source);
-        }
-        let hidden = self.full_precision - self.precision;
-        self.vertex_source.extend(odd.iter().map(|&o| record.get(o as usize).vertex));
-        let wanted: Vec<[i32; 3]> = self.vertex_source[num_coarse..]
-            .iter()
-            .map(|&v| self.cells[v as usize].map(|c| c >> hidden))
-            .collect();
-        let (models, mesh) = (&mut self.coordinates, &mut self.mesh);
-        expect_sound(coordinates::code(&mut coder, models, mesh, &patches, self.precision, Some(&wanted)));
+        let payload = match self.profile {
+            Profile::Small => {
+                let mut coder = RangeEncoder::new();
+                self.split_with(&mut coder, record);
+                coder.finish()
+            }
+            Profile::Fast => {
+                let mut coder = StreamWriter::new();
+                self.split_with(&mut coder, record);
+                coder.finish()
+            }
+        };
         let row = Pass {
             action: Action::Split,
             vertices: record.len() as u32,
             faces: (self.mesh.surface.triangles.len() - num_faces) as u32,
             bytes: 0,
         };
-        self.finish_pass(row, record.len(), coder);
+        self.finish_pass(row, record.len(), payload);
+    }
+
+    fn split_with<B: BitCoder>(&mut self, coder: &mut B, record: &LevelRecord) {
+        let target = self.connectivity_target(record);
+        let (models, mesh) = (&mut self.connectivity, &self.mesh);
+        let patches = expect_sound(connectivity::code(coder, models, mesh, record.len(), Some(&target)));
+        let odd: Vec<u32> = (0..patches.len()).map(|j| odd_of(&target, &patches, j)).collect();
+        drop(target);
+
+        let hidden = self.full_precision - self.precision;
+        let sources = odd.iter().map(|&o| record.get(o as usize).vertex);
+        let wanted: Vec<[i32; 3]> = sources.map(|v| self.cells[v as usize].map(|c| c >> hidden)).collect();
+        let mut builder = StarBuilder::new(self.mesh.positions.len());
+        for (j, &odd) in odd.iter().enumerate() {
+            let star = expect_sound(builder.restore(&mut self.mesh.surface, &patches, j));
+            let removed = record.get(odd as usize);
+            self.face_source.resize(self.mesh.surface.triangles.len(), 0);
+            name_faces(star, &removed, &self.vertex_source, &mut self.face_source);
+            if B::HAS_STREAMS {
+                let (positions, limit) = (&mut self.mesh.positions, 1 << self.precision);
+                expect_sound(plain::code_vertex(coder, positions, &patches, j, star, limit, wanted[j]));
+            }
+        }
+        self.vertex_source.extend(odd.iter().map(|&o| record.get(o as usize).vertex));
+        if !B::HAS_STREAMS {
+            let (models, mesh) = (&mut self.coordinates, &mut self.mesh);
+            expect_sound(coordinates::code(coder, models, mesh, &patches, self.precision, Some(&wanted)));
+        }
     }
 
     /// Translates a record into the decoder's numbering.

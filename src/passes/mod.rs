@@ -10,6 +10,7 @@ pub(crate) mod connectivity;
 pub(crate) mod coordinates;
 pub(crate) mod guess;
 pub(crate) mod patch;
+pub(crate) mod plain;
 mod polygon;
 pub(crate) mod refine;
 pub(crate) mod surroundings;
