@@ -21,6 +21,32 @@ pub(crate) mod stream {
     pub(crate) const COUNT: usize = SYMBOLS + NUM_SYMBOLS;
 }
 
+/// Vertices of a pass from which on it has more streams: each costs some thirty bytes of statistics.
+const SOME_VERTICES: u32 = 1000;
+const MANY_VERTICES: u32 = 8000;
+
+/// The stream that stands for each, in a pass that brings so many vertices.
+fn merged(vertices: u32) -> [u8; stream::COUNT] {
+    use stream::{GROW, IN_PATCH, SYMBOLS};
+    std::array::from_fn(|i| {
+        let to = match i {
+            _ if vertices >= MANY_VERTICES => i,
+            SYMBOLS.. if vertices >= SOME_VERTICES => SYMBOLS + (i - SYMBOLS) / 4 * 4 + (i - SYMBOLS) % 2,
+            SYMBOLS.. => SYMBOLS + (i - SYMBOLS) % 2,
+            // Six for each size of a patch, two for each valence.
+            GROW.. if vertices >= SOME_VERTICES => {
+                GROW + ((i - GROW) / 6).min(2) * 6 + (i - GROW) % 6 / 2 * 2
+            }
+            GROW.. => GROW + ((i - GROW) / 6).min(1) * 6,
+            // Four for each valence.
+            IN_PATCH.. if vertices >= SOME_VERTICES => IN_PATCH + (i - IN_PATCH) / 4 * 4,
+            IN_PATCH.. => IN_PATCH,
+            _ => i,
+        };
+        to as u8
+    })
+}
+
 /// Numbers below this are symbols of their own.
 const WHOLE: u32 = 16;
 /// Largest number of bits of a residual, folded.
@@ -32,6 +58,15 @@ const PER_LENGTH: u32 = 4;
 const STORED: u8 = 0;
 const PACKED: u8 = 1;
 
+/// Bits or symbols in each byte: of decisions as many as can still be told apart by frequency.
+fn elements_per_byte(stream: usize) -> u32 {
+    match stream {
+        stream::RAW => 8,
+        stream::SYMBOLS.. => 1,
+        _ => 4,
+    }
+}
+
 /// Place in a stream: bits of decisions, bytes of symbols.
 #[derive(Clone, Copy, Default)]
 struct Cursor {
@@ -40,16 +75,17 @@ struct Cursor {
 }
 
 /// Reads what a [`StreamWriter`] wrote. Owns its bytes, so that it may rest.
-#[derive(Default)]
 pub(crate) struct StreamReader {
+    merged: [u8; stream::COUNT],
     bytes: Vec<u8>,
     cursors: Vec<Cursor>,
     is_exhausted: bool,
 }
 
 impl StreamReader {
-    /// Unpacks a payload whose streams may take `most` bytes. `None` if it is no such payload.
-    pub(crate) fn new(payload: &[u8], most: usize) -> Option<Self> {
+    /// Unpacks the payload of a pass that brings so many vertices; its streams may take `most` bytes. `None`
+    /// if it is no such payload.
+    pub(crate) fn new(payload: &[u8], vertices: u32, most: usize) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let (method, size) = (reader.u8()?, reader.varint()? as usize);
         if size > most || size >= 1 << 28 {
@@ -65,22 +101,24 @@ impl StreamReader {
         };
         let mut reader = Reader::new(&bytes);
         let mut lengths = [0; stream::COUNT];
-        for length in &mut lengths {
+        let merged = merged(vertices);
+        for (_, length) in lengths.iter_mut().enumerate().filter(|(i, _)| usize::from(merged[*i]) == *i) {
             *length = reader.varint()?;
         }
         let mut start = (bytes.len() - reader.len()) as u32;
         let mut cursors = Vec::with_capacity(stream::COUNT);
         for (i, length) in lengths.into_iter().enumerate() {
             let end = start.checked_add(length).filter(|&end| end as usize <= bytes.len())?;
-            let per_byte = if i < stream::SYMBOLS { 8 } else { 1 };
+            let per_byte = elements_per_byte(i);
             cursors.push(Cursor { next: start * per_byte, end: end * per_byte });
             start = end;
         }
-        (start as usize == bytes.len()).then_some(Self { bytes, cursors, is_exhausted: false })
+        (start as usize == bytes.len()).then_some(Self { merged, bytes, cursors, is_exhausted: false })
     }
 
     #[inline]
     fn bit(&mut self, stream: usize) -> bool {
+        let stream = usize::from(self.merged[stream]);
         let cursor = &mut self.cursors[stream];
         if cursor.next == cursor.end {
             self.is_exhausted = true;
@@ -88,11 +126,16 @@ impl StreamReader {
         }
         let at = cursor.next;
         cursor.next += 1;
-        self.bytes[(at >> 3) as usize] >> (at & 7) & 1 == 1
+        if stream == stream::RAW {
+            self.bytes[(at >> 3) as usize] >> (at & 7) & 1 == 1
+        } else {
+            self.bytes[(at >> 2) as usize] >> (at & 3) & 1 == 1
+        }
     }
 
     #[inline]
     fn symbol(&mut self, stream: usize) -> u8 {
+        let stream = usize::from(self.merged[stream]);
         let cursor = &mut self.cursors[stream];
         if cursor.next == cursor.end {
             self.is_exhausted = true;
@@ -141,6 +184,7 @@ impl BitCoder for StreamReader {
 /// Sorts decisions and symbols into streams.
 #[cfg(any(feature = "encoder", test))]
 pub(crate) struct StreamWriter {
+    merged: [u8; stream::COUNT],
     streams: Vec<Vec<u8>>,
     /// Bits in each stream of decisions.
     counts: Vec<usize>,
@@ -148,18 +192,25 @@ pub(crate) struct StreamWriter {
 
 #[cfg(any(feature = "encoder", test))]
 impl StreamWriter {
-    pub(crate) fn new() -> Self {
-        Self { streams: vec![Vec::new(); stream::COUNT], counts: vec![0; stream::COUNT] }
+    /// A payload of a pass that brings so many vertices.
+    pub(crate) fn new(vertices: u32) -> Self {
+        Self {
+            merged: merged(vertices),
+            streams: vec![Vec::new(); stream::COUNT],
+            counts: vec![0; stream::COUNT],
+        }
     }
 
     fn push(&mut self, stream: usize, bit: bool) {
+        let stream = usize::from(self.merged[stream]);
         let count = &mut self.counts[stream];
         let bytes = &mut self.streams[stream];
-        if count.is_multiple_of(8) {
+        let place = *count % elements_per_byte(stream) as usize;
+        if place == 0 {
             bytes.push(0);
         }
         if let Some(last) = bytes.last_mut() {
-            *last |= u8::from(bit) << (*count % 8);
+            *last |= u8::from(bit) << place;
         }
         *count += 1;
     }
@@ -167,7 +218,8 @@ impl StreamWriter {
     /// The payload.
     pub(crate) fn finish(self) -> Vec<u8> {
         let mut head = Vec::new();
-        self.streams.iter().for_each(|s| write_varint(&mut head, s.len() as u32));
+        let kept = self.streams.iter().enumerate().filter(|(i, _)| usize::from(self.merged[*i]) == *i);
+        kept.for_each(|(_, s)| write_varint(&mut head, s.len() as u32));
         let size = head.len() + self.streams.iter().map(Vec::len).sum::<usize>();
         let parts: Vec<&[u8]> = std::iter::once(&head).chain(&self.streams).map(Vec::as_slice).collect();
         let mut payload = Vec::new();
@@ -204,6 +256,7 @@ impl BitCoder for StreamWriter {
 
     fn difference(&mut self, stream: usize, value: i32) -> Option<i32> {
         let folded = (value << 1 ^ value >> 31) as u32;
+        let stream = usize::from(self.merged[stream]);
         if folded < WHOLE {
             self.streams[stream].push(folded as u8);
             return Some(value);
@@ -228,6 +281,8 @@ const OWN_BLOCK: usize = 256;
 fn pack(parts: &[&[u8]], size: usize) -> Option<Vec<u8>> {
     use std::io::Write;
     let mut encoder = zstd::Encoder::new(Vec::new(), LEVEL).ok()?;
+    // What looks like a repetition is mostly chance.
+    encoder.set_parameter(zstd::zstd_safe::CParameter::MinMatch(7)).ok()?;
     encoder.include_contentsize(false).ok()?;
     encoder.include_checksum(false).ok()?;
     encoder.set_pledged_src_size(Some(size as u64)).ok()?;
@@ -270,7 +325,7 @@ mod tests {
     fn streams_return() {
         let values = [0, 1, -1, 7, -8, 8, 100, -1000, i32::MAX, i32::MIN, 1 << 20];
         for repeat in [1, 200] {
-            let mut writer = StreamWriter::new();
+            let mut writer = StreamWriter::new(if repeat > 1 { 5000 } else { 0 });
             for i in 0..repeat {
                 for (k, &value) in values.iter().enumerate() {
                     writer.difference(stream::SYMBOLS + k % 3, value);
@@ -279,7 +334,7 @@ mod tests {
                 }
             }
             let payload = writer.finish();
-            let mut reader = StreamReader::new(&payload, 1 << 20).unwrap();
+            let mut reader = StreamReader::new(&payload, if repeat > 1 { 5000 } else { 0 }, 1 << 20).unwrap();
             for i in 0..repeat {
                 for (k, &value) in values.iter().enumerate() {
                     assert_eq!(reader.difference(stream::SYMBOLS + k % 3, 0), Some(value));
@@ -289,9 +344,13 @@ mod tests {
             }
             assert!(!reader.is_exhausted());
             assert!(!reader.symbol(stream::SYMBOLS) > 0 && reader.is_exhausted());
-            assert!(StreamReader::new(&payload, 10).is_none(), "more than allowed");
+            assert!(StreamReader::new(&payload, 0, 10).is_none(), "more than allowed");
             for cut in 0..payload.len() {
-                assert!(StreamReader::new(&payload[..cut], 1 << 20).is_none(), "{cut} of {}", payload.len());
+                assert!(
+                    StreamReader::new(&payload[..cut], 0, 1 << 20).is_none(),
+                    "{cut} of {}",
+                    payload.len()
+                );
             }
         }
     }

@@ -9,6 +9,7 @@ use crate::bitstream::streams::StreamReader;
 use crate::passes::base::Grower;
 use crate::passes::connectivity::PausedWalk;
 use crate::passes::patch::{Patches, StarBuilder};
+use crate::passes::plain::Located;
 use crate::passes::work::{SWEPT_PER_UNIT, Work};
 use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, plain, refine};
 
@@ -27,6 +28,8 @@ pub(super) struct Running {
 enum Coder {
     Range(RangeState),
     Streams(Box<StreamReader>),
+    /// Taken out while the pass goes on.
+    AtWork,
 }
 
 /// What is done next.
@@ -53,7 +56,7 @@ impl Running {
     /// `None` if the payload has streams and they are not what such a pass may have.
     pub(super) fn new(payload: &[u8], pass: &PassInfo, profile: Profile) -> Option<Self> {
         let coder = if profile == Profile::Fast && pass.kind != PassKind::Base {
-            Coder::Streams(Box::new(StreamReader::new(payload, most_stream_bytes(pass))?))
+            Coder::Streams(Box::new(StreamReader::new(payload, pass.row.vertices, most_stream_bytes(pass))?))
         } else {
             Coder::Range(RangeDecoder::new(payload).pause())
         };
@@ -74,7 +77,7 @@ impl Running {
         payload: &[u8],
         work: &mut Work,
     ) -> Result<Option<Patches>, Malformed> {
-        match std::mem::replace(&mut self.coder, Coder::Streams(Box::default())) {
+        match std::mem::replace(&mut self.coder, Coder::AtWork) {
             Coder::Range(state) => {
                 let mut coder = RangeDecoder::resume(payload, &state);
                 let result = self.advance_with(decoder, pass, &mut coder, work);
@@ -87,6 +90,7 @@ impl Running {
                 self.coder = Coder::Streams(coder);
                 result
             }
+            Coder::AtWork => Err(Malformed(EXHAUSTED)),
         }
     }
 
@@ -155,16 +159,10 @@ impl Running {
                     while next < patches.len() && work.take(patches.edges(next).len()) {
                         let star = builder.restore(&mut mesh.surface, &patches, next)?;
                         if B::HAS_STREAMS {
+                            let GridMesh { positions, roughness, .. } = &mut *mesh;
+                            let mut known = Located { positions, roughness };
                             let limit = 1 << pass.precision;
-                            plain::code_vertex(
-                                coder,
-                                &mut mesh.positions,
-                                &patches,
-                                next,
-                                star,
-                                limit,
-                                [0; 3],
-                            )?;
+                            plain::code_vertex(coder, &mut known, &patches, next, star, limit, [0; 3])?;
                         }
                         next += 1;
                     }

@@ -15,7 +15,7 @@ use crate::passes::base::{self, BaseTarget};
 use crate::passes::connectivity::{self, ConnectivityModels, ConnectivityTarget, NOT_IN_PATCH};
 use crate::passes::coordinates::{self, CoordinateModels};
 use crate::passes::patch::{Patches, Star, StarBuilder};
-use crate::passes::plain;
+use crate::passes::plain::{self, Located};
 use crate::passes::refine::{self, RefineModels};
 use crate::passes::work::Work;
 use crate::simplify::LevelRecord;
@@ -163,7 +163,7 @@ impl<'a> PassWriter<'a> {
                 coder.finish()
             }
             Profile::Fast => {
-                let mut coder = StreamWriter::new();
+                let mut coder = StreamWriter::new(0);
                 let positions = &mut self.mesh.positions;
                 positions.iter_mut().flatten().for_each(|c| *c *= 2);
                 plain::refine_some(&mut coder, positions, &mut 0, Some(&target), &mut Work::unlimited());
@@ -184,7 +184,7 @@ impl<'a> PassWriter<'a> {
                 coder.finish()
             }
             Profile::Fast => {
-                let mut coder = StreamWriter::new();
+                let mut coder = StreamWriter::new(record.len() as u32);
                 self.split_with(&mut coder, record);
                 coder.finish()
             }
@@ -215,8 +215,9 @@ impl<'a> PassWriter<'a> {
             self.face_source.resize(self.mesh.surface.triangles.len(), 0);
             name_faces(star, &removed, &self.vertex_source, &mut self.face_source);
             if B::HAS_STREAMS {
-                let (positions, limit) = (&mut self.mesh.positions, 1 << self.precision);
-                expect_sound(plain::code_vertex(coder, positions, &patches, j, star, limit, wanted[j]));
+                let GridMesh { positions, roughness, .. } = &mut self.mesh;
+                let (mut known, limit) = (Located { positions, roughness }, 1 << self.precision);
+                expect_sound(plain::code_vertex(coder, &mut known, &patches, j, star, limit, wanted[j]));
             }
         }
         self.vertex_source.extend(odd.iter().map(|&o| record.get(o as usize).vertex));

@@ -6,18 +6,25 @@ use super::patch::{Patches, Star};
 use super::work::Work;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::streams::stream;
+use crate::bitstream::tables::log2;
 use crate::lanes::Lanes;
 use crate::mesh::surface::NO_CORNER;
 
 /// Share of the parallelograms' mean distance from the ring's mean.
-const TIP_SHARE: f32 = 0.4;
-/// Lengths that streams of symbols tell apart, by powers of two.
-const LENGTHS: usize = stream::NUM_SYMBOLS / 2;
+const TIP_SHARE: f32 = 0.5;
+/// Expected sizes of residuals that streams of symbols tell apart, by powers of two.
+const CLASSES: usize = stream::NUM_SYMBOLS / 2;
+
+/// What is known of the vertices so far.
+pub(crate) struct Located<'a> {
+    pub(crate) positions: &'a mut Vec<[i32; 3]>,
+    pub(crate) roughness: &'a mut Vec<[i8; 2]>,
+}
 
 /// Codes the cell of the vertex inside `star`, the next one without a position.
 pub(crate) fn code_vertex<B: BitCoder>(
     coder: &mut B,
-    positions: &mut Vec<[i32; 3]>,
+    mesh: &mut Located,
     patches: &Patches,
     patch: usize,
     star: &Star,
@@ -26,6 +33,7 @@ pub(crate) fn code_vertex<B: BitCoder>(
 ) -> Result<(), Malformed> {
     let tips = patches.coarse_tips(patch);
     let first = patches.first_edge(patch);
+    let Located { positions, roughness } = mesh;
     let cell = |v: u32| positions[v as usize];
     let origin = cell(star.ring[0]);
     let point = |v: u32| Lanes::between(origin, cell(v));
@@ -34,16 +42,19 @@ pub(crate) fn code_vertex<B: BitCoder>(
     let mut sum = Lanes::ZERO;
     let mut over = (Lanes::ZERO, 0.0);
     let mut normal = Lanes::ZERO;
+    let mut rough = [0; 2];
     let mut before = point(star.ring[degree - 1]);
     let mut edge = first + degree - 1;
     let is_open = star.outer.len() < degree;
     for (i, &v) in star.ring.iter().enumerate() {
         let p = point(v);
         sum += p;
+        let [along, across] = roughness[v as usize];
+        rough = [rough[0] + i32::from(along), rough[1] + i32::from(across)];
         normal += before.cross(p);
-        // The edge from the vertex before to this one; the first of an open ring is none.
-        let tip = tips.get(if edge < tips.len() { edge } else { edge - tips.len() }).copied();
-        if let Some(tip) = tip.filter(|&tip| tip != NO_CORNER && !(is_open && i == 0)) {
+        // Across the edge from the vertex before to this one; the first of an open ring is none.
+        let tip = tips[edge % tips.len()];
+        if tip != NO_CORNER && !(is_open && i == 0) {
             over.0 += before + p - point(tip);
             over.1 += 1.0;
         }
@@ -54,29 +65,35 @@ pub(crate) fn code_vertex<B: BitCoder>(
     let guess = mean + (over.0 - mean * over.1) * (TIP_SHARE * share);
     let extent = (point(star.ring[degree / 2]) - mean).abs();
     let length = (extent.0[0] + extent.0[1]) + extent.0[2];
-    // The exponent of a number of at least one.
-    let class = ((length + 1.0).to_bits() >> 23) as usize - 127;
-    let symbols = stream::SYMBOLS + 2 * class.min(LENGTHS - 1);
-    let [x, y, z, _] = normal.abs().0;
-    let across = if x > y && x > z {
-        0
-    } else if y > z {
-        1
-    } else {
-        2
+    let log_length = log2(length + 1.0);
+    let class = |rough: i32| {
+        let log_size = log_length + rough as f32 * (share * 0.125);
+        2 * ((log_size + 2.0).clamp(0.0, (CLASSES - 1) as f32) as usize)
     };
+    let symbols = [stream::SYMBOLS + class(rough[0]), stream::SYMBOLS + 1 + class(rough[1])];
+    let [x, y, z, _] = normal.abs().0;
+    let across = if x > y && x > z { 0 } else { 1 + usize::from(z >= y) };
     let mut position = [0; 3];
+    let mut sizes = [0; 2];
     for axis in 0..3 {
-        let expected = origin[axis].wrapping_add((guess.0[axis] + 0.5).floor() as i32);
-        let difference = wanted[axis].wrapping_sub(expected);
-        let symbols = symbols + usize::from(axis == across);
-        let difference = coder.difference(symbols, difference).ok_or(OUTSIDE)?;
-        position[axis] = expected.wrapping_add(difference);
-        if !(0..limit).contains(&i64::from(position[axis])) {
+        // Within 32 bits, whatever the cells are.
+        let nearest = (guess.0[axis] + 0.5).floor().clamp(-1e9, 1e9) as i32;
+        let expected = origin[axis] + nearest;
+        let difference = wanted[axis] - expected;
+        let is_across = usize::from(axis == across);
+        let difference = coder.difference(symbols[is_across], difference).ok_or(OUTSIDE)?;
+        let cell = i64::from(expected) + i64::from(difference);
+        if !(0..limit).contains(&cell) {
             return Err(OUTSIDE);
         }
+        position[axis] = cell as i32;
+        sizes[is_across] += difference.unsigned_abs() >> (1 - is_across);
     }
     positions.push(position);
+    roughness.push(sizes.map(|size| {
+        let log_share = log2(size as f32 + 0.5) - log_length;
+        (log_share * 8.0).clamp(-120.0, 120.0) as i8
+    }));
     Ok(())
 }
 
