@@ -12,7 +12,7 @@ use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format, TerrainOptions};
 use crate::mesh::{Attribute, Surface};
 use crate::{
-    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Step,
+    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Profile, Step,
     StreamInfo, TriMesh, Update, encode,
 };
 
@@ -348,6 +348,7 @@ fn made_up(data: &[u8]) -> Vec<u8> {
     let precision = 1 + u32::from(input.u8()) % header::MAX_PRECISION;
     let base_precision = 1 + u32::from(input.u8()) % precision;
     let grid = Grid { precision, origin: [0.0; 3], side: 1.0 };
+    let profile = input.u8() % 2;
     let base = Pass {
         action: Action::Base { precision: base_precision },
         vertices: 3 + u32::from(input.u8()),
@@ -372,7 +373,7 @@ fn made_up(data: &[u8]) -> Vec<u8> {
     }
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
-    chunk::write(&mut bytes, kind::HEADER, &Header { grid, is_usual: true, profile: 0 }.write());
+    chunk::write(&mut bytes, kind::HEADER, &Header { grid, is_usual: true, profile }.write());
     chunk::write(&mut bytes, kind::PASSES, &pass_table::write_passes(&passes));
     for (pass, payload) in passes.iter().zip(payloads) {
         let kind = match pass.action {
@@ -422,6 +423,8 @@ fn options_from(input: &mut Input) -> EncodeOptions {
         steps_per_edge: Some(f64::from(1 + input.u8() % 64) * 0.5).filter(|&steps| steps > 2.0),
         window: Window { rings: 1 + u32::from(input.u8() % 4), ..Window::default() },
         growth: 1.0 + f64::from(input.u8() % 8),
+        profile: Profile::ALL[usize::from(input.u8()) % Profile::ALL.len()],
+        effort: [5, 0, 9][usize::from(input.u8()) % 3],
         ..EncodeOptions::default()
     }
 }

@@ -101,6 +101,15 @@ pub struct Encode {
     #[arg(long, value_name = "NAME", verbatim_doc_comment)]
     #[arg(default_value = EncodeOptions::default().profile.name(), value_parser = profile_parser())]
     pub profile: Profile,
+    /// Time to spend, 0 to 9.
+    ///
+    /// - 0 to 2: no descriptor in the balanced partition, and of --optimize size one try
+    /// - 3 to 6: as usual
+    /// - 7, 8: with --optimize size more schedules of precision are tried, and the smallest kept
+    /// - 9: and other partitions, each with all schedules
+    #[arg(long, value_name = "N", verbatim_doc_comment)]
+    #[arg(default_value_t = EncodeOptions::default().effort, value_parser = clap::value_parser!(u32).range(0..=9))]
+    pub effort: u32,
     /// Grid steps to the mean edge of a level, 0.5 to 1e9 [default: by the error of each level].
     #[arg(long, value_name = "STEPS")]
     #[arg(allow_negative_numbers = true, value_parser = quantity::number(0.5, 1e9))]

@@ -25,6 +25,7 @@ impl Encode {
         options.partition = self.partition;
         options.optimize = self.optimize;
         options.profile = self.profile;
+        options.effort = self.effort;
         options.steps_per_edge = self.steps_per_edge;
         options
     }
@@ -187,6 +188,7 @@ impl Report<'_> {
             "partition": args.partition.name(),
             "optimize": args.optimize.name(),
             "profile": args.profile.name(),
+            "effort": args.effort,
             "steps_per_edge": args.steps_per_edge,
             "read_seconds": self.read_seconds,
             "encode_seconds": self.encode_seconds,

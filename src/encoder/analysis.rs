@@ -34,12 +34,14 @@ pub(super) fn analyse(
     surface: Surface,
     model: &Model,
     options: &EncodeOptions,
+    max_valence: Option<u32>,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Hierarchy {
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
     let mean_edge = descriptors::mean_edge_length(mesh) * model.unit;
     let geometry = Geometry { grid: &model.cells, positions: &model.positions };
-    let mut descent = Descent::new(surface, geometry, mean_edge, settings(options));
+    let mut descent =
+        Descent::new(surface, geometry, mean_edge, Settings { max_valence, ..settings(options) });
     let squared_step = model.steps_per_unit().powi(2);
     let mut records = Vec::new();
     let mut mean_edges = vec![descent.level().mean_edge(&model.cells)];
@@ -71,5 +73,6 @@ pub(super) fn analyse(
 
 fn settings(options: &EncodeOptions) -> Settings {
     let EncodeOptions { descriptor, window, growth, levels, partition, optimize, .. } = *options;
-    Settings { descriptor, window, growth, levels, partition, optimize }
+    let is_hasty = options.effort < EncodeOptions::LOW_EFFORT;
+    Settings { descriptor, window, growth, levels, partition, optimize, is_hasty, max_valence: None }
 }

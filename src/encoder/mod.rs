@@ -9,7 +9,7 @@ mod write;
 pub use options::{EncodeOptions, Encoded, Progress};
 
 use crate::mesh::repair::{Repaired, repair};
-use crate::{EncodeError, Optimize, StreamInfo, TriMesh};
+use crate::{EncodeError, StreamInfo, TriMesh};
 
 /// Encodes a mesh.
 ///
@@ -40,20 +40,27 @@ pub fn encode_with_progress(
     if surface.triangles.len().max(surface.corner_of.len()) >= (u32::MAX / 4) as usize {
         return Err(EncodeError::TooLarge(surface.triangles.len()));
     }
-    let model = quantise::quantise(mesh, &source, options.quantization)?;
+    let mut model = quantise::quantise(mesh, &source, options.quantization)?;
     drop(source);
-    let hierarchy = analysis::analyse(mesh, surface, &model, options, progress);
-    drop(model.positions);
-    let write = |steps_per_edge| {
-        let schedule = schedule::plan(&hierarchy, options.quantization, steps_per_edge);
-        write::write(&hierarchy, &model.cells, &model.grid, &schedule, options, progress)
-    };
-    let mut bytes = write(options.steps_per_edge);
-    if options.optimize == Optimize::Size && options.steps_per_edge.is_none() {
-        // Which surfaces are smaller with all bits at once only trying tells.
-        let at_once = write(Some(f64::MAX));
-        if at_once.len() < bytes.len() {
-            bytes = at_once;
+    let others = options.other_valences();
+    let attempts = std::iter::once(None).chain(others.iter().copied().map(Some));
+    let mut surface = Some(surface);
+    let mut bytes: Vec<u8> = Vec::new();
+    for (i, max_valence) in attempts.enumerate() {
+        let taken = if i == others.len() { surface.take() } else { surface.clone() };
+        let hierarchy =
+            analysis::analyse(mesh, taken.unwrap_or_default(), &model, options, max_valence, progress);
+        if i == others.len() {
+            model.positions = Vec::new();
+        }
+        let tried = if options.steps_per_edge.is_some() { &[None] } else { options.steps_tried() };
+        for &steps in tried {
+            let steps = options.steps_per_edge.or(steps);
+            let schedule = schedule::plan(&hierarchy, options.quantization, steps);
+            let new = write::write(&hierarchy, &model.cells, &model.grid, &schedule, options, progress);
+            if bytes.is_empty() || new.len() < bytes.len() {
+                bytes = new;
+            }
         }
     }
     // The encoder's own bytes always hold a header.
