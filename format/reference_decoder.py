@@ -11,6 +11,7 @@ import collections
 import math
 import pathlib
 import struct
+import subprocess
 import sys
 import zlib
 
@@ -226,6 +227,8 @@ class Mesh:
 
 
 class RangeDecoder:
+    has_streams = False
+
     def __init__(self, payload):
         self.payload, self.position = payload, 0
         self.range, self.code = 0xFFFFFFFF, 0
@@ -256,6 +259,86 @@ class RangeDecoder:
 
     def check_end(self):
         require(self.position <= len(self.payload) + 8, "a pass needs more bytes than it has")
+
+
+# 6.5 Streams
+
+RAW, FACES, GROW, SYMBOLS, STREAMS = 0, 1, 21, 45, 69
+
+
+def unzip(data):
+    """A zstd frame, by whatever knows that format here."""
+    try:
+        from compression import zstd
+
+        return zstd.decompress(data)
+    except ImportError:
+        pass
+    try:
+        import zstandard
+
+        return zstandard.ZstdDecompressor().decompressobj().decompress(data)
+    except ImportError:
+        pass
+    try:
+        return subprocess.run(["zstd", "-dc"], input=data, stdout=subprocess.PIPE, check=True).stdout
+    except OSError:
+        sys.exit("the profile fast needs Python 3.14, the module zstandard or the program zstd")
+
+
+class Streams:
+    has_streams = True
+
+    def __init__(self, payload, vertices):
+        reader = Reader(payload)
+        method, size = reader.u8(), reader.varint()
+        require(method < 2, "the method of streams")
+        data = reader.take(size) if method == 0 else unzip(reader.take(reader.varint()))
+        require(len(data) == size, "the size of streams")
+        self.merged = [self.merge(i, vertices) for i in range(STREAMS)]
+        reader = Reader(data)
+        lengths = [reader.varint() if self.merged[i] == i else 0 for i in range(STREAMS)]
+        self.elements = []
+        for i, length in enumerate(lengths):
+            data = reader.take(length)
+            bits = 1 if i >= SYMBOLS else 8 if i == RAW else 4
+            self.elements.append(data if bits == 1 else [byte >> k & 1 for byte in data for k in range(bits)])
+        require(reader.is_empty(), "the lengths of streams")
+        self.next = [0] * STREAMS
+
+    @staticmethod
+    def merge(i, vertices):
+        if i == RAW or vertices >= 8000:
+            return i
+        some = vertices >= 1000
+        if i < GROW:
+            return FACES + (i - FACES) // 4 * 4 if some else FACES
+        if i < SYMBOLS:
+            k = i - GROW
+            return GROW + (min(k // 6, 2) * 6 + k % 6 // 2 * 2 if some else min(k // 6, 1) * 6)
+        k = i - SYMBOLS
+        return SYMBOLS + (k // 4 * 4 if some else 0) + k % 2
+
+    def element(self, stream):
+        stream = self.merged[stream]
+        require(self.next[stream] < len(self.elements[stream]), "a pass needs more bytes than it has")
+        self.next[stream] += 1
+        return self.elements[stream][self.next[stream] - 1]
+
+    def bit(self, _):
+        return self.element(RAW)
+
+    def difference(self, stream):
+        n = self.element(stream)
+        if n >= 16:
+            length, n = (n - 16) // 4 + 5, 4 + (n - 16) % 4
+            require(length <= 32, "a difference beyond 32 bits")
+            for _ in range(length - 3):
+                n = 2 * n + self.element(RAW)
+        return -(n + 1) // 2 if n % 2 else n // 2
+
+    def check_end(self):
+        pass
 
 
 # 6.2 Tables
@@ -681,15 +764,37 @@ class Connectivity:
                     self.touched[v] += 1
                     self.gain(v, 1)
 
-    def decide(self, c, seed):
-        mesh = self.mesh
+    def in_patch(self, c, seed):
+        if self.coder.has_streams:
+            t = self.mesh.vertex(c)
+            beside = not seed and self.state_across(c) == IN_PATCH
+            return self.coder.element(FACES + (clamp(self.live(t) - 3, 0, 4) * 2 + (self.touched[t] > 0)) * 2 + beside)
         self.polygon = Polygon([(*self.corner(x), 1) for x in (next_(c), prev(c), c)], 0 if seed else 1)
         self.fit, self.fits = FITS, {}
         if not seed:
             for passed, i in enumerate((next_(c), prev(c))):
                 if self.is_open(i):
                     self.fits[i] = self.grown(i, passed).fit(self.square)
-        if not self.models.in_patch.code(self.coder, *self.face_contexts(c, seed)):
+        return self.models.in_patch.code(self.coder, *self.face_contexts(c, seed))
+
+    def grows(self, patch, i, after):
+        b = self.mesh.across[i]
+        if not self.is_open(i):
+            return False
+        if self.coder.has_streams:
+            f = self.mesh.vertex(b)
+            k = (min(len(patch.faces), 4) - 1) * 6 + clamp(self.live(f) - 4, 0, 2) * 2 + (self.touched[f] > 0)
+            return self.coder.element(GROW + k)
+        fit = self.fits[i] if i in self.fits else self.grown(i, 0).fit(self.square)
+        contexts = self.growth_contexts(patch, i, b, fit, self.fits.get(after, UNKNOWN))
+        bit = self.models.grow.code(self.coder, *contexts)
+        if bit:
+            self.polygon, self.fit, self.fits = self.grown(i, 0), fit, {}
+        return bit
+
+    def decide(self, c, seed):
+        mesh = self.mesh
+        if not self.in_patch(c, seed):
             self.mark(c // 3, KEPT)
             self.gates += [next_(c), prev(c)] + [c] * seed
             return
@@ -703,19 +808,13 @@ class Connectivity:
         while stack:
             i = stack.pop()
             b = mesh.across[i]
-            grows = False
-            if self.is_open(i):
-                fit = self.fits[i] if i in self.fits else self.grown(i, 0).fit(self.square)
-                after = self.fits.get(stack[-1], UNKNOWN) if stack else UNKNOWN
-                contexts = self.growth_contexts(patch, i, b, fit, after)
-                grows = self.models.grow.code(self.coder, *contexts)
-            if grows:
-                self.polygon, self.fit, self.fits = self.grown(i, 0), fit, {}
+            if self.grows(patch, i, stack[-1] if stack else None):
                 self.take(patch, b // 3)
                 stack += [prev(b), next_(b)]
             else:
                 self.add_edge(patch, i)
-                self.polygon.cursor += 1
+                if not self.coder.has_streams:
+                    self.polygon.cursor += 1
         for k, edge in enumerate(patch.edges):
             if mesh.across[edge] == NONE and edge not in self.has_ear and self.models.open.code(self.coder, 0):
                 patch.open = k
@@ -858,6 +957,7 @@ def restore(mesh, patch):
         mesh.corner_of[b] = 3 * f + 1
     mesh.corner_of.append(3 * faces[0] + 2)
     mesh.valence.append(d)
+    return ring
 
 
 # 8.1 Neighbourhood
@@ -1138,9 +1238,47 @@ def decode_coordinates(coder, models, residuals, mesh, patches):
 # 7.5 Refinement
 
 
+# 7.6 Coordinates from streams
+
+
+def decode_plain(coder, mesh, patch, ring):
+    origin, d, closed = mesh.cell[ring[0]], len(ring), patch.open == CLOSED
+    point = [way(origin, mesh.cell[u]) for u in ring]
+    share = 1 / Single(d)
+    total = over = normal = (ZERO, ZERO, ZERO)
+    k, rough = ZERO, [0, 0]
+    for i in range(d):
+        before, p = point[i - 1], point[i]
+        total, normal = add(total, p), add(normal, cross(before, p))
+        rough = [a + b for a, b in zip(rough, mesh.roughness[ring[i]])]
+        tip = patch.tips[(patch.start() + d - 1 + i) % len(patch.tips)]
+        if tip != NONE and (closed or i > 0):
+            over, k = add(over, sub(add(before, p), way(origin, mesh.cell[tip]))), k + 1
+    mean = scaled(total, share)
+    guess = add(mean, scaled(sub(over, scaled(mean, k)), 0.5 * share))
+    x, y, z = (abs(a) for a in sub(point[d // 2], mean))
+    log_length = log2(x + y + z + 1)
+    classes = [int(clamp(log_length + Single(r) * (share * 0.125) + 2, 0.0, 11.0)) for r in rough]
+    x, y, z = (abs(a) for a in normal)
+    across = 0 if x > y and x > z else 1 if y > z else 2
+    cell, sizes = [], [0, 0]
+    for axis in range(3):
+        expected = origin[axis] + int(clamp(math.floor(guess[axis] + 0.5), -1e9, 1e9))
+        kind = int(axis == across)
+        difference = coder.difference(SYMBOLS + 2 * classes[kind] + kind)
+        cell.append(expected + difference)
+        require(0 <= cell[axis] < 1 << mesh.precision, "a vertex lies outside the grid")
+        sizes[kind] += abs(difference) >> 1 - kind
+    mesh.cell.append(cell)
+    mesh.roughness.append([int(clamp((log2(Single(s) + 0.5) - log_length) * 8, -120.0, 120.0)) for s in sizes])
+
+
 def refine(coder, models, mixed, mesh):
     mesh.precision += 1
     mesh.cell = [[2 * c for c in cell] for cell in mesh.cell]
+    if coder.has_streams:
+        mesh.cell = [[c + coder.element(RAW) for c in cell] for cell in mesh.cell]
+        return
     for v, cell in enumerate(mesh.cell):
         around = around_refined(mesh, v)
         g = VertexGuess(models, around)
@@ -1440,7 +1578,7 @@ def chunks(stream, rows):
 def read_grid(payload):
     reader = Reader(payload)
     flags, precision = reader.u8(), reader.u8()
-    require(flags < 4 and 1 <= precision <= 30, "the header")
+    require(flags < 16 and 1 <= precision <= 30, "the header")
     *origin, side = struct.unpack("<4d", reader.take(32)) if flags & 1 else struct.unpack("<4f", reader.take(16))
     sound = side >= 0 and all(math.isfinite(x) and math.isfinite(x + side) for x in origin)
     require(sound and math.isfinite(side) and reader.is_empty(), "the header")
@@ -1564,6 +1702,8 @@ def decode(stream):
         elif kind == "H":
             require(grid is None, "a chunk out of order")
             grid = read_grid(payload)
+            profile = payload[0] >> 2
+            require(profile < 2, "unsupported profile")
         elif kind == "L":
             require(grid and rows is None, "a chunk out of order")
             rows, precision = read_table(payload, grid[0])
@@ -1572,7 +1712,7 @@ def decode(stream):
         elif kind in "BSR":
             require(rows is not None and not awaited, "a chunk out of order")
             _, vertices, faces, _ = rows[done]
-            coder = RangeDecoder(payload)
+            coder = Streams(payload, vertices) if profile and kind != "B" else RangeDecoder(payload)
             if kind == "B":
                 mesh = Base(coder, vertices, faces, precision).mesh
             elif kind == "S":
@@ -1581,8 +1721,11 @@ def decode(stream):
                 new_faces = sum(1 if patch.open != CLOSED else 2 for patch in patches)
                 require(new_faces == faces, "a level has other faces than announced")
                 for patch in patches:
-                    restore(mesh, patch)
-                decode_coordinates(coder, *coordinates, mesh, patches)
+                    ring = restore(mesh, patch)
+                    if profile:
+                        decode_plain(coder, mesh, patch, ring)
+                if not profile:
+                    decode_coordinates(coder, *coordinates, mesh, patches)
             else:
                 refine(coder, *refinement, mesh)
             coder.check_end()
@@ -1613,8 +1756,10 @@ def main():
                 print(line, flush=True)
         return
     golden = pathlib.Path(__file__).parent / "golden"
-    wanted = (golden / "checksums.txt").read_text().splitlines()[1:]
-    found = [line for path in sorted(golden.glob("*.lwc")) for line in lines_of(path)]
+    wanted, found = [], []
+    for folder in golden, golden / "fast":
+        wanted += (folder / "checksums.txt").read_text().splitlines()[1:]
+        found += [line for path in sorted(folder.glob("*.lwc")) for line in lines_of(path)]
     different = [pair for pair in zip(found, wanted) if pair[0] != pair[1]]
     if different or len(found) != len(wanted):
         sys.exit("different: %r, %d lines instead of %d" % (different[:1], len(found), len(wanted)))

@@ -28,6 +28,10 @@ pub(crate) struct Settings {
     pub(crate) levels: Option<u32>,
     pub(crate) partition: Partition,
     pub(crate) optimize: Optimize,
+    /// The descriptor is left out where the partition can do without.
+    pub(crate) is_hasty: bool,
+    /// Largest valence that goes, if not the usual one.
+    pub(crate) max_valence: Option<u32>,
 }
 
 /// A surface on its way down. Yields each level with what was removed from it, finest first; what stays
@@ -130,8 +134,8 @@ impl<'a> Descent<'a> {
 
     /// Empty where the partition does not look at them.
     fn scores(&mut self) -> Vec<f64> {
-        let Settings { descriptor, window, partition, optimize, .. } = self.settings;
-        if !partition.uses_descriptor(optimize) {
+        let Settings { descriptor, window, partition, optimize, is_hasty, .. } = self.settings;
+        if !partition.uses_descriptor(optimize) || is_hasty && partition == Partition::Balanced {
             return Vec::new();
         }
         let mean_edge = self.mean_edge;
@@ -157,6 +161,7 @@ impl Iterator for Descent<'_> {
         let record = remove_level(
             self.settings.partition,
             self.settings.optimize,
+            self.settings.max_valence,
             &mut self.shrinking,
             self.geometry,
             &mut self.memory,

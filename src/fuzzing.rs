@@ -13,7 +13,7 @@ use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format, TerrainOptions};
 use crate::mesh::{Attribute, Surface};
 use crate::{
-    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Step,
+    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Profile, Step,
     StreamInfo, TriMesh, Update, encode,
 };
 
@@ -383,6 +383,7 @@ fn made_up(data: &[u8]) -> Vec<u8> {
     let precision = 1 + u32::from(input.u8()) % header::MAX_PRECISION;
     let base_precision = 1 + u32::from(input.u8()) % precision;
     let grid = Grid { precision, origin: [0.0; 3], side: 1.0 };
+    let profile = input.u8() % 2;
     let base = Pass {
         action: Action::Base { precision: base_precision },
         vertices: 3 + u32::from(input.u8()),
@@ -419,7 +420,7 @@ fn made_up(data: &[u8]) -> Vec<u8> {
     };
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
-    chunk::write(&mut bytes, kind::HEADER, &Header { grid, is_usual: true }.write());
+    chunk::write(&mut bytes, kind::HEADER, &Header { grid, is_usual: true, profile }.write());
     chunk::write(&mut bytes, kind::ANNOUNCED, &announced.write());
     chunk::write(&mut bytes, kind::PASSES, &pass_table::write_passes(&passes));
     for (i, (pass, payload)) in passes.iter().zip(payloads).enumerate() {
@@ -482,6 +483,8 @@ fn options_from(input: &mut Input) -> EncodeOptions {
         keep_degenerate: input.flag(),
         window: Window { rings: 1 + u32::from(input.u8() % 4), ..Window::default() },
         growth: 1.0 + f64::from(input.u8() % 8),
+        profile: Profile::ALL[usize::from(input.u8()) % Profile::ALL.len()],
+        effort: [5, 0, 9][usize::from(input.u8()) % 3],
         ..EncodeOptions::default()
     }
 }

@@ -31,6 +31,7 @@ pub mod metrics;
 #[cfg(feature = "encoder")]
 mod partition;
 mod passes;
+mod profile;
 #[cfg(feature = "render")]
 pub mod render;
 mod scene;
@@ -52,3 +53,4 @@ pub use mesh::repair::RepairReport;
 pub use mesh::{MeshError, TriMesh};
 #[cfg(feature = "encoder")]
 pub use partition::{Optimize, Partition};
+pub use profile::Profile;

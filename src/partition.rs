@@ -136,6 +136,7 @@ const FINE_SHARE: f64 = 0.7;
 pub(crate) fn remove_level(
     partition: Partition,
     optimize: Optimize,
+    max_valence: Option<u32>,
     surface: &mut ShrinkingSurface,
     geometry: Geometry,
     memory: &mut ErrorMemory,
@@ -145,7 +146,8 @@ pub(crate) fn remove_level(
     scores: &[f64],
 ) -> LevelRecord {
     let is_fine = vertices.len() as f64 > FINE_SHARE * surface.surface.corner_of.len() as f64;
-    let thinning = Thinning::of(optimize, is_fine);
+    let mut thinning = Thinning::of(optimize, is_fine);
+    thinning.max_valence = max_valence.unwrap_or(thinning.max_valence);
     match partition {
         Partition::Algorithm1 => {
             let mut order = by_score(vertices, scores);
@@ -337,11 +339,12 @@ fn closely_packed(surface: &ShrinkingSurface, free: &[u32]) -> Vec<u32> {
     chosen
 }
 
-/// Error of the best collapse of each vertex, weighed by the rank of its score.
+/// Error of the best collapse of each vertex, weighed by the rank of its score if there are scores.
 fn saliency(surface: &ShrinkingSurface, memory: &ErrorMemory, vertices: &[u32], scores: &[f64]) -> Vec<f64> {
     const MIN_PARALLEL: usize = 2048;
-    let mut weight = vec![0.0_f64; vertices.len()];
-    for (rank, place) in places_by_score(vertices, scores).into_iter().enumerate() {
+    let mut weight = vec![1.0_f64; vertices.len()];
+    let places = if scores.is_empty() { Vec::new() } else { places_by_score(vertices, scores) };
+    for (rank, place) in places.into_iter().enumerate() {
         weight[place as usize] = (2.0 * rank as f64 / vertices.len() as f64 - 1.0).exp2();
     }
     let weighed = |star: &mut Star, (&v, weight): (&u32, f64)| {

@@ -21,11 +21,23 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("format/golden")
 }
 
+/// Those of the profile fast have a folder of their own: not every decoder reads them.
+#[cfg(feature = "fast")]
+fn fast_folder() -> PathBuf {
+    folder().join("fast")
+}
+
 /// Names and bytes, sorted by name; made anew first if that is wanted.
 fn streams() -> Vec<(String, Vec<u8>)> {
     #[cfg(feature = "encoder")]
     make::update_if_wanted();
-    let mut streams: Vec<(String, Vec<u8>)> = std::fs::read_dir(folder())
+    let streams = streams_in(&folder());
+    assert!(streams.len() >= 10, "only {} golden streams", streams.len());
+    streams
+}
+
+fn streams_in(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut streams: Vec<(String, Vec<u8>)> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|ending| ending == "lwc"))
@@ -35,7 +47,6 @@ fn streams() -> Vec<(String, Vec<u8>)> {
         })
         .collect();
     streams.sort();
-    assert!(streams.len() >= 10, "only {} golden streams", streams.len());
     streams
 }
 
@@ -81,10 +92,23 @@ fn checksum_of_whole(mesh: &lwc::TriMesh) -> u32 {
 
 #[test]
 fn every_golden_stream_decodes_to_its_checksums() {
-    let streams = streams();
-    let recorded = std::fs::read_to_string(folder().join("checksums.txt")).unwrap();
+    check(&streams(), &folder());
+}
+
+#[cfg(feature = "fast")]
+#[test]
+fn every_fast_golden_stream_decodes_to_its_checksums() {
+    // Made anew, if that is wanted, with the others.
+    streams();
+    let streams = streams_in(&fast_folder());
+    assert!(streams.len() >= 4, "only {} golden streams", streams.len());
+    check(&streams, &fast_folder());
+}
+
+fn check(streams: &[(String, Vec<u8>)], folder: &Path) {
+    let recorded = std::fs::read_to_string(folder.join("checksums.txt")).unwrap();
     let mut found = HEADING.to_owned();
-    for (name, stream) in &streams {
+    for (name, stream) in streams {
         found += &lines_of(name, stream);
     }
     for (found, recorded) in found.lines().zip(recorded.lines()) {
@@ -159,6 +183,7 @@ mod make {
     use super::common::*;
     use lwc::descriptors::Descriptor;
     use lwc::{EncodeOptions, Partition, TriMesh, encode};
+    use std::path::Path;
     use std::sync::Once;
 
     /// Writes all streams and their checksums, once, if `LWC_UPDATE_GOLDEN` is set.
@@ -172,16 +197,41 @@ mod make {
     }
 
     fn update() {
-        std::fs::create_dir_all(super::folder()).unwrap();
-        let mut streams = all();
+        write(all(), &super::folder());
+        #[cfg(feature = "fast")]
+        write(all_fast(), &super::fast_folder());
+    }
+
+    fn write(mut streams: Vec<(&'static str, Vec<u8>)>, folder: &Path) {
+        std::fs::create_dir_all(folder).unwrap();
         streams.sort();
         let mut checksums = super::HEADING.to_owned();
         for (name, stream) in streams {
             let name = format!("{name}.lwc");
-            std::fs::write(super::folder().join(&name), &stream).unwrap();
+            std::fs::write(folder.join(&name), &stream).unwrap();
             checksums += &super::lines_of(&name, &stream);
         }
-        std::fs::write(super::folder().join("checksums.txt"), checksums).unwrap();
+        std::fs::write(folder.join("checksums.txt"), checksums).unwrap();
+    }
+
+    #[cfg(feature = "fast")]
+    fn all_fast() -> Vec<(&'static str, Vec<u8>)> {
+        let bumpy = |x: f64, y: f64| 0.6 * (0.7 * x).sin() * (0.5 * y).cos();
+        let fast =
+            |mesh: &TriMesh, bits| stream(mesh, |o| (o.profile, o.quantization) = (lwc::Profile::Fast, bits));
+        vec![
+            ("tetrahedron", fast(&tetrahedron(), 12)),
+            ("open-grid", fast(&noisy(grid(16, 13, bumpy), 2, 0.05), 12)),
+            ("torus-30-bits", fast(&noisy(torus(20, 9), 1, 0.02), 30)),
+            ("soup", fast(&soup(30, 60, 5), 9)),
+            // Passes with all kinds of streams.
+            ("large-torus", fast(&noisy(torus(100, 50), 1, 0.002), 7)),
+            ("strip-with-ears", {
+                stream(&noisy(strip(120), 3, 0.02), |o| {
+                    (o.partition, o.profile) = (Partition::Algorithm1, lwc::Profile::Fast);
+                })
+            }),
+        ]
     }
 
     fn stream(mesh: &TriMesh, change: impl Fn(&mut EncodeOptions)) -> Vec<u8> {

@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 21] = [
+const LAYERS: [(&str, &[&str]); 22] = [
     ("error", &[]),
     ("limits", &["error"]),
     ("lanes", &[]),
+    ("profile", &[]),
     ("bitstream", &["lanes"]),
     ("mesh", &[]),
     ("scene", &["bitstream", "mesh"]),
@@ -22,7 +23,7 @@ const LAYERS: [(&str, &[&str]); 21] = [
     ("partition", &["mesh", "simplify"]),
     ("descent", &["descriptors", "levels", "mesh", "partition", "simplify"]),
     ("passes", &["bitstream", "lanes", "lifting", "mesh"]),
-    ("decoder", &["bitstream", "error", "limits", "mesh", "passes", "scene"]),
+    ("decoder", &["bitstream", "error", "limits", "mesh", "passes", "profile", "scene"]),
     (
         "encoder",
         &[
@@ -35,6 +36,7 @@ const LAYERS: [(&str, &[&str]); 21] = [
             "mesh",
             "partition",
             "passes",
+            "profile",
             "scene",
             "simplify",
         ],

@@ -211,3 +211,25 @@ mod corpus {
         assert!(files.is_empty() || returned >= 100, "only {returned} round trips");
     }
 }
+
+#[test]
+fn every_effort_returns_and_more_of_it_is_no_larger() {
+    let mesh = noisy(torus(24, 12), 3, 0.02);
+    for optimize in lwc::Optimize::ALL {
+        let sizes: Vec<usize> = [0, 3, 5, 7, 9]
+            .into_iter()
+            .map(|effort| {
+                let mut options = EncodeOptions::default();
+                (options.optimize, options.effort) = (optimize, effort);
+                let what = format!("{}, effort {effort}", optimize.name());
+                assert_round_trip(&mesh, &options, &what).bytes.len()
+            })
+            .collect();
+        if optimize == lwc::Optimize::Size {
+            assert!(sizes.is_sorted_by(|a, b| a >= b), "{sizes:?}");
+        }
+    }
+    let mut options = EncodeOptions::default();
+    options.effort = 10;
+    assert!(matches!(encode(&mesh, &options), Err(EncodeError::Option { option: "effort", .. })));
+}

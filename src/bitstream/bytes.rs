@@ -12,6 +12,11 @@ impl<'a> Reader<'a> {
         Self { bytes }
     }
 
+    /// Bytes left.
+    pub(crate) fn len(&self) -> usize {
+        self.bytes.len()
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }

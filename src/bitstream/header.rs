@@ -58,16 +58,20 @@ pub(crate) struct Header {
     pub(crate) grid: Grid,
     /// The levels were made as [`Provenance::USUAL`] says.
     pub(crate) is_usual: bool,
+    /// Number of the profile, up to [`MAX_PROFILE`].
+    pub(crate) profile: u8,
 }
 
 const WIDE_FLOATS: u8 = 1;
 const USUAL_PROVENANCE: u8 = 2;
+const PROFILE_SHIFT: u32 = 2;
+const MAX_PROFILE: u8 = 3;
 
 impl Header {
     pub(crate) fn read(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let flags = reader.u8()?;
-        if flags & !(WIDE_FLOATS | USUAL_PROVENANCE) != 0 {
+        if flags >> PROFILE_SHIFT > MAX_PROFILE {
             return None;
         }
         let precision = u32::from(reader.u8()?);
@@ -79,7 +83,8 @@ impl Header {
             && side >= 0.0
             && origin.iter().all(|o| o.is_finite() && (o + side).is_finite());
         let grid = Grid { precision, origin, side };
-        (sound && reader.is_empty()).then_some(Self { grid, is_usual: flags & USUAL_PROVENANCE != 0 })
+        let (is_usual, profile) = (flags & USUAL_PROVENANCE != 0, flags >> PROFILE_SHIFT);
+        (sound && reader.is_empty()).then_some(Self { grid, is_usual, profile })
     }
 
     #[cfg(any(feature = "encoder", test))]
@@ -88,7 +93,8 @@ impl Header {
         let numbers = [origin[0], origin[1], origin[2], side];
         let is_narrow = numbers.iter().all(|&x| f64::from(x as f32).to_bits() == x.to_bits());
         let width = if is_narrow { 0 } else { WIDE_FLOATS };
-        let flags = width | if self.is_usual { USUAL_PROVENANCE } else { 0 };
+        let usual = if self.is_usual { USUAL_PROVENANCE } else { 0 };
+        let flags = width | usual | self.profile << PROFILE_SHIFT;
         let mut payload = vec![flags, precision as u8];
         for x in numbers {
             if is_narrow {
@@ -176,10 +182,10 @@ mod tests {
 
     #[test]
     fn grids_return_in_the_shorter_form_that_is_exact() {
-        let header = |grid| Header { grid, is_usual: false };
+        let header = |grid| Header { grid, is_usual: false, profile: 0 };
         assert_eq!(header(GRID).write().len(), 18);
-        for is_usual in [false, true] {
-            let header = Header { is_usual, ..header(GRID) };
+        for (is_usual, profile) in [(false, 0), (true, 0), (false, 1), (true, MAX_PROFILE)] {
+            let header = Header { is_usual, profile, ..header(GRID) };
             assert_eq!(Header::read(&header.write()), Some(header));
         }
         let fine = header(Grid { origin: [0.1, 5_500_000.001, 0.0], ..GRID });

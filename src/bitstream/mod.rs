@@ -10,4 +10,5 @@ pub(crate) mod mixture;
 pub(crate) mod pass_table;
 pub(crate) mod range_coder;
 pub(crate) mod residual;
+pub(crate) mod streams;
 pub(crate) mod tables;

@@ -13,6 +13,20 @@ pub(crate) trait BitCoder {
     /// Codes one bit, `p1` = probability of a one in 1/65536, within 1..=65535.
     fn code(&mut self, bit: bool, p1: u32) -> bool;
 
+    /// Whether [`decide`](Self::decide) is what codes, not probabilities.
+    const HAS_STREAMS: bool = false;
+
+    /// Codes one bit as an element of a stream, where there are streams.
+    fn decide(&mut self, _stream: usize, bit: bool) -> bool {
+        self.code(bit, PROBABILITY_ONE / 2)
+    }
+
+    /// Codes a difference as a symbol of a stream, where there are streams; `None` if what is read names
+    /// one beyond 32 bits.
+    fn difference(&mut self, _stream: usize, _value: i32) -> Option<i32> {
+        None
+    }
+
     /// True if what is read was not written: a payload ends too early.
     fn is_exhausted(&self) -> bool {
         false

@@ -5,7 +5,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Parser, Subcommand, value_parser};
 use lwc::descriptors::{Descriptor, FeatureChoice, Window};
 use lwc::io::TerrainOptions;
-use lwc::{EncodeOptions, Limits, Optimize, Partition};
+use lwc::{EncodeOptions, Limits, Optimize, Partition, Profile};
 use std::path::PathBuf;
 
 /// Progressive codec for triangle meshes: one small file that can be cut anywhere.
@@ -94,6 +94,22 @@ pub struct Encode {
     #[arg(long, value_name = "AIM", verbatim_doc_comment)]
     #[arg(default_value = EncodeOptions::default().optimize.name(), value_parser = optimize_parser())]
     pub optimize: Optimize,
+    /// How the passes are coded; all decode to the same meshes.
+    ///
+    /// - small: arithmetic coding, the smallest stream
+    /// - fast: zstd, a stream about 1.3 to 1.5 times as large that decodes several times as fast
+    #[arg(long, value_name = "NAME", verbatim_doc_comment)]
+    #[arg(default_value = EncodeOptions::default().profile.name(), value_parser = profile_parser())]
+    pub profile: Profile,
+    /// Time to spend, 0 to 9.
+    ///
+    /// - 0 to 2: no descriptor in the balanced partition, and of --optimize size one try
+    /// - 3 to 6: as usual
+    /// - 7, 8: with --optimize size more schedules of precision are tried, and the smallest kept
+    /// - 9: and other partitions, each with all schedules
+    #[arg(long, value_name = "N", verbatim_doc_comment)]
+    #[arg(default_value_t = EncodeOptions::default().effort, value_parser = clap::value_parser!(u32).range(0..=9))]
+    pub effort: u32,
     /// Grid steps to the mean edge of a level, 0.5 to 1e9 [default: by the error of each level].
     #[arg(long, value_name = "STEPS")]
     #[arg(allow_negative_numbers = true, value_parser = quantity::number(0.5, 1e9))]
@@ -359,6 +375,11 @@ fn partition_parser() -> impl TypedValueParser<Value = Partition> {
 fn optimize_parser() -> impl TypedValueParser<Value = Optimize> {
     PossibleValuesParser::new(Optimize::ALL.map(Optimize::name))
         .try_map(|name| Optimize::ALL.into_iter().find(|o| o.name() == name).ok_or("unknown aim"))
+}
+
+fn profile_parser() -> impl TypedValueParser<Value = Profile> {
+    PossibleValuesParser::new(Profile::ALL.map(Profile::name))
+        .try_map(|name| Profile::ALL.into_iter().find(|p| p.name() == name).ok_or("unknown profile"))
 }
 
 fn format_parser() -> impl TypedValueParser<Value = lwc::io::Format> {

@@ -24,6 +24,8 @@ impl Encode {
         options.levels = self.levels.0;
         options.partition = self.partition;
         options.optimize = self.optimize;
+        options.profile = self.profile;
+        options.effort = self.effort;
         options.steps_per_edge = self.steps_per_edge;
         options.normal_bits = self.normal_bits;
         options.uv_bits = self.uv_bits;
@@ -208,6 +210,8 @@ impl Report<'_> {
             "growth": args.growth,
             "partition": args.partition.name(),
             "optimize": args.optimize.name(),
+            "profile": args.profile.name(),
+            "effort": args.effort,
             "steps_per_edge": args.steps_per_edge,
             "read_seconds": self.read_seconds,
             "encode_seconds": self.encode_seconds,

@@ -103,6 +103,7 @@ fn print(out: &mut dyn Write, info: &StreamInfo, name: &str, present: u64) -> io
     if let Some(partition) = partition(info) {
         writeln!(out, "partition   {partition}")?;
     }
+    writeln!(out, "profile     {}", info.profile().name())?;
     writeln!(out, "header      {} bytes\n", header_bytes(info))?;
     passes::print(out, info, present)
 }
@@ -130,6 +131,7 @@ fn to_json(info: &StreamInfo, name: &str, present: u64) -> Value {
         "radius": window.map(|w| w.1),
         "growth": window.map(|w| w.2),
         "partition": partition(info),
+        "profile": info.profile().name(),
         "passes": passes::to_json(info, present),
         "trailing": passes::trailing_to_json(info, present),
     })

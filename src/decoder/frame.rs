@@ -1,6 +1,5 @@
 //! From bytes to chunks: what a stream announces, and where its passes begin.
 
-use crate::DecodeError;
 use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, Frame, NextPass};
 use crate::bitstream::header::{Action, Grid, Pass, Provenance};
@@ -8,12 +7,14 @@ use crate::bitstream::pass_table::{self, BadTable};
 use crate::limits::Limits;
 use crate::mesh::{Domain, ScalarType, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
+use crate::{DecodeError, Profile};
 
 /// What a stream says of itself before its first pass.
 #[derive(Clone, Debug)]
 pub struct StreamInfo {
     pub(super) grid: Grid,
     pub(super) provenance: Option<Provenance>,
+    pub(super) profile: Profile,
     pub(super) passes: Vec<PassInfo>,
     pub(super) attributes: Vec<AttributeInfo>,
     pub(super) trailing: Vec<TrailingInfo>,
@@ -185,6 +186,11 @@ impl StreamInfo {
     /// Finest level.
     pub fn finest_level(&self) -> u32 {
         self.passes.last().map_or(0, |p| p.level)
+    }
+
+    /// How it is coded.
+    pub fn profile(&self) -> Profile {
+        self.profile
     }
 
     /// All passes in order.

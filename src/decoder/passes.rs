@@ -2,9 +2,8 @@
 
 use super::frame::{PassInfo, PassKind};
 use super::running::Running;
-use crate::DecodeError;
 use crate::bitstream::header::Action;
-use crate::bitstream::range_coder::{BitCoder, RangeDecoder};
+use crate::bitstream::range_coder::RangeDecoder;
 use crate::limits::Limits;
 use crate::mesh::Surface;
 use crate::passes::connectivity::ConnectivityModels;
@@ -12,7 +11,8 @@ use crate::passes::coordinates::CoordinateModels;
 use crate::passes::patch::{Patches, StarBuilder};
 use crate::passes::refine::RefineModels;
 use crate::passes::work::Work;
-use crate::passes::{EXHAUSTED, GridMesh, Malformed};
+use crate::passes::{GridMesh, Malformed};
+use crate::{DecodeError, Profile};
 
 /// The mesh and all that is learnt about it.
 #[derive(Clone)]
@@ -67,14 +67,11 @@ impl PassDecoder {
         payload: &[u8],
         work: &mut Work,
     ) -> Result<Option<(Changes, Patches)>, Malformed> {
-        let mut coder = running.coder(payload);
-        let result = running.advance(self, pass, &mut coder, work).and_then(|patches| {
-            let Some(patches) = patches else { return Ok(None) };
-            check_end(&coder)?;
+        let result = running.advance(self, pass, payload, work).map(|patches| {
+            let patches = patches?;
             work.sweep(pass.faces as usize);
-            Ok(Some((Changes::of(pass, &patches), patches)))
+            Some((Changes::of(pass, &patches), patches))
         });
-        running.pause(&coder);
         if result.is_err() {
             self.roll_back(running);
         }
@@ -102,8 +99,8 @@ impl PassDecoder {
         }
         let mut coder = RangeDecoder::of_cut(payload);
         let mut ahead = self.clone();
-        let mut running = Running::new(payload);
-        let patches = running.advance(&mut ahead, pass, &mut coder, &mut Work::unlimited()).ok()??;
+        let mut running = Running::new(payload, pass, Profile::Small)?;
+        let patches = running.advance_with(&mut ahead, pass, &mut coder, &mut Work::unlimited()).ok()??;
         if pass.kind == PassKind::Refine {
             return Some((ahead.mesh, patches));
         }
@@ -133,10 +130,6 @@ impl Changes {
             first_new_face,
         }
     }
-}
-
-fn check_end(coder: &RangeDecoder) -> Result<(), Malformed> {
-    if coder.is_exhausted() { Err(Malformed(EXHAUSTED)) } else { Ok(()) }
 }
 
 /// Checks a pass against the limits before anything is allocated for it. `held`: bytes that are taken besides.

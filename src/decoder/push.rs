@@ -15,7 +15,7 @@ use crate::passes::GridMesh;
 use crate::passes::attribute::Declarations;
 use crate::passes::patch::Patches;
 use crate::passes::work::Work;
-use crate::{DecodeError, TriMesh};
+use crate::{DecodeError, Profile, TriMesh};
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -68,6 +68,7 @@ pub struct Decoder {
     header: Option<Header>,
     provenance: Option<Provenance>,
     announced: Option<Announced>,
+    profile: Profile,
     info: Option<StreamInfo>,
     /// Passes done.
     done: usize,
@@ -100,6 +101,7 @@ impl Decoder {
             header: None,
             provenance: None,
             announced: None,
+            profile: Profile::default(),
             info: None,
             done: 0,
             passes: PassDecoder::new(),
@@ -241,6 +243,9 @@ impl Decoder {
             match (chunk.kind, &self.header) {
                 (kind::HEADER, None) => {
                     let header = Header::read(payload).ok_or(malformed("the header"))?;
+                    let profile = Profile::from_code(header.profile).filter(|profile| profile.is_supported());
+                    let profile = profile.ok_or_else(|| unsupported_profile(header.profile))?;
+                    self.profile = profile;
                     let usual = header.is_usual.then_some(Provenance::USUAL);
                     self.provenance = self.provenance.or(usual);
                     self.header = Some(header);
@@ -257,8 +262,8 @@ impl Decoder {
                     let trailing = frame::add_announced(&mut passes, &announced);
                     let trailing = trailing.map_err(|e| malformed(e.0))?;
                     let attributes = declared.list.iter().map(AttributeInfo::of).collect();
-                    let (grid, provenance) = (*grid, self.provenance);
-                    self.info = Some(StreamInfo { grid, provenance, passes, attributes, trailing });
+                    let (grid, provenance, profile) = (*grid, self.provenance, self.profile);
+                    self.info = Some(StreamInfo { grid, provenance, profile, passes, attributes, trailing });
                 }
                 (kind::DECLARATIONS, _) if self.attributes.is_none() => {
                     let needed = 2 * payload.len() as u64 + self.frames.buffered() as u64;
@@ -286,7 +291,9 @@ impl Decoder {
         let attributes = self.attributes.as_ref().map(|a| attributes::memory_for(&a.declarations, pass));
         let held = self.frames.buffered() as u64 + attributes.unwrap_or(0);
         passes::check_limits(pass, &self.limits, held)?;
-        self.advance(Running::new(payload), chunk, work)
+        let running =
+            Running::new(payload, pass, self.profile).ok_or(malformed("a pass of other streams"))?;
+        self.advance(running, chunk, work)
     }
 
     /// Goes on with the next pass.
@@ -475,7 +482,9 @@ impl Decoder {
     }
 
     fn mesh_with_cut(&self) -> Option<(&PassInfo, GridMesh, Patches)> {
-        let pass = self.next_pass().filter(|_| self.running.is_none())?;
+        // Streams that are compressed begin to tell only when they are whole.
+        let is_readable = self.running.is_none() && self.profile != Profile::Fast;
+        let pass = self.next_pass().filter(|_| is_readable)?;
         let (kind, payload) = self.frames.cut_chunk(Some(pass.frame()))?;
         // The coder reads four bytes ahead: fewer decide nothing.
         if self.failed || !kind::is_pass(kind) || payload.len() < 5 {
@@ -503,6 +512,14 @@ impl Decoder {
     pub fn is_complete(&self) -> bool {
         self.info.is_some() && self.next_pass().is_none() && self.awaited.is_empty()
     }
+}
+
+fn unsupported_profile(code: u8) -> DecodeError {
+    let what = match Profile::from_code(code) {
+        Some(profile) => format!("profile {}, which this decoder was built without", profile.name()),
+        None => format!("profile {code}"),
+    };
+    DecodeError::Unsupported(what)
 }
 
 fn out_of_order(chunk: &Chunk) -> DecodeError {

@@ -2,23 +2,34 @@
 
 use super::frame::{PassInfo, PassKind};
 use super::passes::PassDecoder;
+use crate::Profile;
 use crate::bitstream::header::Action;
-use crate::bitstream::range_coder::{RangeDecoder, RangeState};
+use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeState};
+use crate::bitstream::streams::StreamReader;
 use crate::passes::base::Grower;
 use crate::passes::connectivity::PausedWalk;
 use crate::passes::patch::{Patches, StarBuilder};
+use crate::passes::plain::Located;
 use crate::passes::work::{SWEPT_PER_UNIT, Work};
-use crate::passes::{GridMesh, Malformed, coordinates, refine};
+use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, plain, refine};
 
 /// A pass that has begun, and what was there before it.
 pub(super) struct Running {
-    coder: RangeState,
+    coder: Coder,
     stage: Stage,
     /// Positions before a refinement, once it writes them.
     pub(super) old_positions: Option<Vec<[i32; 3]>>,
     /// Triangles before a split, once it writes them.
     pub(super) old_triangles: Option<Vec<[u32; 3]>>,
     pub(super) num_old_vertices: usize,
+}
+
+/// What the payload is read by.
+enum Coder {
+    Range(RangeState),
+    Streams(Box<StreamReader>),
+    /// Taken out while the pass goes on.
+    AtWork,
 }
 
 /// What is done next.
@@ -42,22 +53,45 @@ enum Stage {
 }
 
 impl Running {
-    pub(super) fn new(payload: &[u8]) -> Self {
-        Self {
-            coder: RangeDecoder::new(payload).pause(),
+    /// `None` if the payload has streams and they are not what such a pass may have.
+    pub(super) fn new(payload: &[u8], pass: &PassInfo, profile: Profile) -> Option<Self> {
+        let coder = if profile == Profile::Fast && pass.kind != PassKind::Base {
+            Coder::Streams(Box::new(StreamReader::new(payload, pass.row.vertices, most_stream_bytes(pass))?))
+        } else {
+            Coder::Range(RangeDecoder::new(payload).pause())
+        };
+        Some(Self {
+            coder,
             stage: Stage::Begin,
             old_positions: None,
             old_triangles: None,
             num_old_vertices: 0,
+        })
+    }
+
+    /// Goes on until the pass is over, which gives its patches, or the work is used up.
+    pub(super) fn advance(
+        &mut self,
+        decoder: &mut PassDecoder,
+        pass: &PassInfo,
+        payload: &[u8],
+        work: &mut Work,
+    ) -> Result<Option<Patches>, Malformed> {
+        match std::mem::replace(&mut self.coder, Coder::AtWork) {
+            Coder::Range(state) => {
+                let mut coder = RangeDecoder::resume(payload, &state);
+                let result = self.advance_with(decoder, pass, &mut coder, work);
+                self.coder = Coder::Range(coder.pause());
+                at_end(result, &coder)
+            }
+            Coder::Streams(mut coder) => {
+                let result = self.advance_with(decoder, pass, &mut *coder, work);
+                let result = at_end(result, &*coder);
+                self.coder = Coder::Streams(coder);
+                result
+            }
+            Coder::AtWork => Err(Malformed(EXHAUSTED)),
         }
-    }
-
-    pub(super) fn coder<'a>(&self, payload: &'a [u8]) -> RangeDecoder<'a> {
-        RangeDecoder::resume(payload, &self.coder)
-    }
-
-    pub(super) fn pause(&mut self, coder: &RangeDecoder) {
-        self.coder = coder.pause();
     }
 
     /// Positions and triangles from before the pass, wherever they are now.
@@ -69,13 +103,12 @@ impl Running {
         }
     }
 
-    /// Goes on until the pass is over, which gives its patches, or the work is used up. Of a cut payload
-    /// as many coordinates are read as there are.
-    pub(super) fn advance(
+    /// The same with a coder. Of a cut payload as many coordinates are read as there are.
+    pub(super) fn advance_with<B: BitCoder>(
         &mut self,
         decoder: &mut PassDecoder,
         pass: &PassInfo,
-        coder: &mut RangeDecoder,
+        coder: &mut B,
         work: &mut Work,
     ) -> Result<Option<Patches>, Malformed> {
         let mesh = &mut decoder.mesh;
@@ -124,11 +157,19 @@ impl Running {
                 }
                 Stage::Stars(patches, mut builder, mut next) => {
                     while next < patches.len() && work.take(patches.edges(next).len()) {
-                        builder.restore(&mut mesh.surface, &patches, next)?;
+                        let star = builder.restore(&mut mesh.surface, &patches, next)?;
+                        if B::HAS_STREAMS {
+                            let GridMesh { positions, roughness, .. } = &mut *mesh;
+                            let mut known = Located { positions, roughness };
+                            let limit = 1 << pass.precision;
+                            plain::code_vertex(coder, &mut known, &patches, next, star, limit, [0; 3])?;
+                        }
                         next += 1;
                     }
                     if next < patches.len() {
                         Stage::Stars(patches, builder, next)
+                    } else if B::HAS_STREAMS {
+                        return Ok(Some(patches));
                     } else {
                         Stage::Coordinates(patches)
                     }
@@ -150,7 +191,12 @@ impl Running {
                     }
                 }
                 Stage::Refine(mut next) => {
-                    if refine::code_some(coder, &mut decoder.refine, mesh, &mut next, None, work) {
+                    let is_over = if B::HAS_STREAMS {
+                        plain::refine_some(coder, &mut mesh.positions, &mut next, None, work)
+                    } else {
+                        refine::code_some(coder, &mut decoder.refine, mesh, &mut next, None, work)
+                    };
+                    if is_over {
                         return Ok(Some(Patches::default()));
                     }
                     Stage::Refine(next)
@@ -173,6 +219,21 @@ impl Running {
                 Stage::Walk(PausedWalk::new(mesh, pass.row.vertices as usize))
             }
         }
+    }
+}
+
+/// Bytes that the streams of a pass may take: a bit for each question that the walk can ask, 16 bytes per
+/// vertex that gets coordinates, and the head.
+fn most_stream_bytes(pass: &PassInfo) -> usize {
+    let new = if pass.kind == PassKind::Split { pass.row.vertices } else { 0 };
+    1024 + pass.faces as usize + pass.vertices as usize + 16 * new as usize
+}
+
+/// At the end of a pass what was read must have been there.
+fn at_end<T>(result: Result<Option<T>, Malformed>, coder: &impl BitCoder) -> Result<Option<T>, Malformed> {
+    match result {
+        Ok(Some(_)) if coder.is_exhausted() => Err(Malformed(EXHAUSTED)),
+        other => other,
     }
 }
 

@@ -65,7 +65,16 @@ impl Tower {
         let num_vertices = surface.corner_of.len();
         let Options { descriptor, window, growth, levels, partition, .. } = *options;
         let optimize = Optimize::default();
-        let settings = Settings { descriptor, window, growth, levels, partition, optimize };
+        let settings = Settings {
+            descriptor,
+            window,
+            growth,
+            levels,
+            partition,
+            optimize,
+            is_hasty: false,
+            max_valence: None,
+        };
         let none: BitVec = BitVec::repeat(false, num_vertices);
         let mut descent = Descent::new(surface, geometry, mean_edge, settings, none);
         // Finest first, in the numbering of the surface.

@@ -40,6 +40,7 @@ pub(super) fn analyse(
     glued: BitVec,
     seams: Seams,
     options: &EncodeOptions,
+    max_valence: Option<u32>,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Hierarchy {
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
@@ -50,7 +51,8 @@ pub(super) fn analyse(
     let mean_edge = descriptors::mean_edge_length(&mesh);
     let (positions, _) = mesh.into_parts();
     let geometry = Geometry { grid: cells, positions: &positions };
-    let descent = Descent::new(surface, geometry, mean_edge, settings(options), glued);
+    let settings = Settings { max_valence, ..settings(options) };
+    let descent = Descent::new(surface, geometry, mean_edge, settings, glued);
     let mut descent = descent.with_seams(seams);
     let squared_step = steps_per_unit.powi(2);
     let mut records = Vec::new();
@@ -85,5 +87,6 @@ pub(super) fn analyse(
 
 fn settings(options: &EncodeOptions) -> Settings {
     let EncodeOptions { descriptor, window, growth, levels, partition, optimize, .. } = *options;
-    Settings { descriptor, window, growth, levels, partition, optimize }
+    let is_hasty = options.effort < EncodeOptions::LOW_EFFORT;
+    Settings { descriptor, window, growth, levels, partition, optimize, is_hasty, max_valence: None }
 }

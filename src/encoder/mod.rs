@@ -16,7 +16,7 @@ pub use options::{EncodeOptions, Encoded, Progress};
 
 use crate::mesh::Attributes;
 use crate::mesh::repair::{RepairReport, cut};
-use crate::{EncodeError, Optimize, StreamInfo, TriMesh};
+use crate::{EncodeError, StreamInfo, TriMesh};
 
 /// Encodes a mesh.
 ///
@@ -83,18 +83,24 @@ pub fn encode_with_attributes(
     let quantised = attributes::quantise(mesh, attributes, elements, options)?;
     drop(vertices);
     let glued = trailing::kept(&source);
-    let hierarchy = analysis::analyse(surface, &cells, glued, quantised.seams(), options, progress);
     let exact = Exact { mesh, grid: &grid, ordered: &ordered, source: &source, loose: &loose, options };
-    let write = |steps_per_edge| {
-        let schedule = schedule::plan(&hierarchy, options.quantization, steps_per_edge);
-        write::write(&hierarchy, &cells, &quantised, &exact, &schedule, progress)
-    };
-    let mut bytes = write(options.steps_per_edge);
-    if options.optimize == Optimize::Size && options.steps_per_edge.is_none() {
-        // Which surfaces are smaller with all bits at once only trying tells.
-        let at_once = write(Some(f64::MAX));
-        if at_once.len() < bytes.len() {
-            bytes = at_once;
+    let others = options.other_valences();
+    let attempts = std::iter::once(None).chain(others.iter().copied().map(Some));
+    let mut surface = Some(surface);
+    let mut bytes: Vec<u8> = Vec::new();
+    for (i, max_valence) in attempts.enumerate() {
+        let taken = if i == others.len() { surface.take() } else { surface.clone() }.unwrap_or_default();
+        let seams = quantised.seams();
+        let hierarchy =
+            analysis::analyse(taken, &cells, glued.clone(), seams, options, max_valence, progress);
+        let tried = if options.steps_per_edge.is_some() { &[None] } else { options.steps_tried() };
+        for &steps in tried {
+            let steps = options.steps_per_edge.or(steps);
+            let schedule = schedule::plan(&hierarchy, options.quantization, steps);
+            let new = write::write(&hierarchy, &cells, &quantised, &exact, &schedule, progress);
+            if bytes.is_empty() || new.len() < bytes.len() {
+                bytes = new;
+            }
         }
     }
     // The encoder's own bytes always hold a header.

@@ -3,7 +3,7 @@
 use crate::descent::MAX_LEVELS;
 use crate::descriptors::{Descriptor, Window};
 use crate::mesh::repair::RepairReport;
-use crate::{EncodeError, Optimize, Partition, StreamInfo};
+use crate::{EncodeError, Optimize, Partition, Profile, StreamInfo};
 
 /// How to encode. `Default` gives the defaults named below.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +44,12 @@ pub struct EncodeOptions {
     /// Keep the order of vertices and triangles and the first corner of each, behind the last pass. Default
     /// false.
     pub keep_order: bool,
+    /// How the passes are coded. Default small.
+    pub profile: Profile,
+    /// Time that may be spent, 0 to 9. Below [`LOW_EFFORT`](Self::LOW_EFFORT) the descriptor has no say in the balanced
+    /// partition, which takes it a third of the time less; from [`HIGH_EFFORT`](Self::HIGH_EFFORT) on several ways are
+    /// tried where only the size of the file counts ([`Optimize::Size`]), with 9 all of them. Default 5.
+    pub effort: u32,
 }
 
 impl Default for EncodeOptions {
@@ -65,11 +71,38 @@ impl Default for EncodeOptions {
             keep_degenerate: false,
             lossless: false,
             keep_order: false,
+            profile: Profile::default(),
+            effort: 5,
         }
     }
 }
 
 impl EncodeOptions {
+    /// Below this effort the descriptor has no say in the balanced partition.
+    pub const LOW_EFFORT: u32 = 3;
+    /// From this effort on several ways are tried.
+    pub const HIGH_EFFORT: u32 = 7;
+
+    /// Largest valences of odd vertices that are tried, beside the usual one.
+    pub(super) fn other_valences(&self) -> &'static [u32] {
+        let is_for_size = self.optimize == Optimize::Size && self.partition == Partition::Balanced;
+        match self.effort {
+            9.. if is_for_size => &[5, 7],
+            _ => &[],
+        }
+    }
+
+    /// Precisions that are tried, as grid steps to the mean edge; `None` follows the errors.
+    pub(super) fn steps_tried(&self) -> &'static [Option<f64>] {
+        const AT_ONCE: Option<f64> = Some(f64::MAX);
+        match (self.optimize, self.effort) {
+            (Optimize::Size, Self::HIGH_EFFORT..) => &[None, AT_ONCE, Some(32.0), Some(64.0)],
+            // Which surfaces are smaller with all bits at once only trying tells.
+            (Optimize::Size, Self::LOW_EFFORT..) => &[None, AT_ONCE],
+            _ => &[None],
+        }
+    }
+
     pub(super) fn check(&self) -> Result<(), EncodeError> {
         let fail = |option, value: String, allowed| Err(EncodeError::Option { option, value, allowed });
         if !(1..=30).contains(&self.quantization) {
@@ -87,6 +120,12 @@ impl EncodeOptions {
         }
         if self.levels.is_some_and(|n| n > MAX_LEVELS) {
             return fail("levels", self.levels.unwrap_or(0).to_string(), "0 to 128");
+        }
+        if self.effort > 9 {
+            return fail("effort", self.effort.to_string(), "0 to 9");
+        }
+        if !self.profile.is_supported() {
+            return fail("profile", self.profile.name().to_owned(), "one that this build supports");
         }
         if !(1..=64).contains(&self.window.rings) {
             return fail("rings", self.window.rings.to_string(), "1 to 64");

@@ -6,11 +6,13 @@ use super::attributes::Quantised;
 use super::options::Progress;
 use super::schedule::{Schedule, Step};
 use super::trailing::{Exact, Written};
+use crate::Profile;
 use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::header::{Action, Header, MAX_VERTICES_PER_BYTE, Pass, Provenance};
 use crate::bitstream::pass_table;
-use crate::bitstream::range_coder::RangeEncoder;
+use crate::bitstream::range_coder::{BitCoder, RangeEncoder};
+use crate::bitstream::streams::StreamWriter;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::passes::GridMesh;
 use crate::passes::base::{self, BaseTarget};
@@ -18,7 +20,9 @@ use crate::passes::connectivity::{self, ConnectivityModels, ConnectivityTarget, 
 use crate::passes::coordinates::{self, CoordinateModels};
 use crate::passes::glue::{self, GlueModels};
 use crate::passes::patch::{Patches, Star, StarBuilder};
+use crate::passes::plain::{self, Located};
 use crate::passes::refine::{self, RefineModels};
+use crate::passes::work::Work;
 use crate::simplify::LevelRecord;
 use bitvec::vec::BitVec;
 use std::collections::HashMap;
@@ -73,7 +77,11 @@ fn assemble(
     };
     let has_levels = !hierarchy.records.is_empty();
     let is_usual = has_levels && provenance == Provenance::USUAL;
-    chunk::write(&mut bytes, kind::HEADER, &Header { grid: *grid, is_usual }.write());
+    chunk::write(
+        &mut bytes,
+        kind::HEADER,
+        &Header { grid: *grid, is_usual, profile: options.profile as u8 }.write(),
+    );
     if has_levels && !is_usual {
         chunk::write(&mut bytes, kind::PROVENANCE, &provenance.write());
     }
@@ -115,6 +123,7 @@ struct WrittenPass {
 /// The decoder's state, and how its numbering maps to that of the full surface.
 struct PassWriter<'a> {
     cells: &'a [[i32; 3]],
+    profile: Profile,
     full_precision: u32,
     precision: u32,
     mesh: GridMesh,
@@ -148,6 +157,7 @@ impl<'a> PassWriter<'a> {
         precision: u32,
     ) -> Self {
         let full_precision = exact.grid.precision;
+        let profile = exact.options.profile;
         let hidden = full_precision - precision;
         let positions: Vec<[i32; 3]> =
             hierarchy.base_vertices.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)).collect();
@@ -158,6 +168,7 @@ impl<'a> PassWriter<'a> {
         let coded = expect_sound(coded);
         let mut writer = Self {
             cells,
+            profile,
             full_precision,
             precision,
             mesh: coded.mesh,
@@ -187,14 +198,13 @@ impl<'a> PassWriter<'a> {
             faces: num_faces as u32,
             bytes: 0,
         };
-        writer.finish_pass(row, num_vertices.max(num_faces), coder);
+        writer.finish_pass(row, num_vertices.max(num_faces), coder.finish());
         let Self { mesh, vertex_source, face_source, attributes, .. } = &mut writer;
         attributes.base(mesh, hierarchy, vertex_source, face_source);
         writer
     }
 
-    fn finish_pass(&mut self, mut row: Pass, touched: usize, coder: RangeEncoder) {
-        let mut payload = coder.finish();
+    fn finish_pass(&mut self, mut row: Pass, touched: usize, mut payload: Vec<u8>) {
         // A decoder refuses more vertices than the bytes could plausibly hold.
         let least = touched.div_ceil(MAX_VERTICES_PER_BYTE as usize).saturating_sub(1);
         payload.resize(payload.len().max(least), 0);
@@ -225,49 +235,78 @@ impl<'a> PassWriter<'a> {
         let hidden = self.full_precision - self.precision;
         let target: Vec<[i32; 3]> =
             self.vertex_source.iter().map(|&v| self.cells[v as usize].map(|c| c >> hidden)).collect();
-        let mut coder = RangeEncoder::new();
-        refine::code(&mut coder, &mut self.refine, &mut self.mesh, Some(&target));
+        let payload = match self.profile {
+            Profile::Small => {
+                let mut coder = RangeEncoder::new();
+                refine::code(&mut coder, &mut self.refine, &mut self.mesh, Some(&target));
+                coder.finish()
+            }
+            Profile::Fast => {
+                let mut coder = StreamWriter::new(0);
+                let positions = &mut self.mesh.positions;
+                positions.iter_mut().flatten().for_each(|c| *c *= 2);
+                plain::refine_some(&mut coder, positions, &mut 0, Some(&target), &mut Work::unlimited());
+                coder.finish()
+            }
+        };
         debug_assert_eq!(self.mesh.positions, target);
         let row = Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 0 };
-        self.finish_pass(row, target.len(), coder);
+        self.finish_pass(row, target.len(), payload);
         self.attributes.refine();
     }
 
     fn split(&mut self, record: &LevelRecord) {
-        let target = self.connectivity_target(record);
-        let mut coder = RangeEncoder::new();
-        let patches =
-            connectivity::code(&mut coder, &mut self.connectivity, &self.mesh, record.len(), Some(&target));
-        let patches = expect_sound(patches);
-        let odd: Vec<u32> = (0..patches.len()).map(|j| odd_of(&target, &patches, j)).collect();
-        drop(target);
-
-        let num_coarse = self.mesh.positions.len();
         let num_faces = self.mesh.surface.triangles.len();
-        let mut builder = StarBuilder::new(num_coarse);
-        for (j, &odd) in odd.iter().enumerate() {
-            let star = expect_sound(builder.restore(&mut self.mesh.surface, &patches, j));
-            let removed = record.get(odd as usize);
-            self.face_source.resize(self.mesh.surface.triangles.len(), 0);
-            let shift = name_faces(star, &removed, &self.vertex_source, &mut self.face_source);
-            self.attributes.restore(star, record, &removed, shift);
-        }
-        let hidden = self.full_precision - self.precision;
-        self.vertex_source.extend(odd.iter().map(|&o| record.get(o as usize).vertex));
-        let wanted: Vec<[i32; 3]> = self.vertex_source[num_coarse..]
-            .iter()
-            .map(|&v| self.cells[v as usize].map(|c| c >> hidden))
-            .collect();
-        let (models, mesh) = (&mut self.coordinates, &mut self.mesh);
-        expect_sound(coordinates::code(&mut coder, models, mesh, &patches, self.precision, Some(&wanted)));
+        let num_coarse = self.mesh.positions.len();
+        let (patches, payload) = match self.profile {
+            Profile::Small => {
+                let mut coder = RangeEncoder::new();
+                (self.split_with(&mut coder, record), coder.finish())
+            }
+            Profile::Fast => {
+                let mut coder = StreamWriter::new(record.len() as u32);
+                (self.split_with(&mut coder, record), coder.finish())
+            }
+        };
         let row = Pass {
             action: Action::Split,
             vertices: record.len() as u32,
             faces: (self.mesh.surface.triangles.len() - num_faces) as u32,
             bytes: 0,
         };
-        self.finish_pass(row, record.len(), coder);
+        self.finish_pass(row, record.len(), payload);
         self.attributes.split(&self.mesh, &patches, num_coarse, &self.vertex_source);
+    }
+
+    fn split_with<B: BitCoder>(&mut self, coder: &mut B, record: &LevelRecord) -> Patches {
+        let target = self.connectivity_target(record);
+        let (models, mesh) = (&mut self.connectivity, &self.mesh);
+        let patches = expect_sound(connectivity::code(coder, models, mesh, record.len(), Some(&target)));
+        let odd: Vec<u32> = (0..patches.len()).map(|j| odd_of(&target, &patches, j)).collect();
+        drop(target);
+
+        let hidden = self.full_precision - self.precision;
+        let sources = odd.iter().map(|&o| record.get(o as usize).vertex);
+        let wanted: Vec<[i32; 3]> = sources.map(|v| self.cells[v as usize].map(|c| c >> hidden)).collect();
+        let mut builder = StarBuilder::new(self.mesh.positions.len());
+        for (j, &odd) in odd.iter().enumerate() {
+            let star = expect_sound(builder.restore(&mut self.mesh.surface, &patches, j));
+            let removed = record.get(odd as usize);
+            self.face_source.resize(self.mesh.surface.triangles.len(), 0);
+            let shift = name_faces(star, &removed, &self.vertex_source, &mut self.face_source);
+            self.attributes.restore(star, record, &removed, shift);
+            if B::HAS_STREAMS {
+                let GridMesh { positions, roughness, .. } = &mut self.mesh;
+                let (mut known, limit) = (Located { positions, roughness }, 1 << self.precision);
+                expect_sound(plain::code_vertex(coder, &mut known, &patches, j, star, limit, wanted[j]));
+            }
+        }
+        self.vertex_source.extend(odd.iter().map(|&o| record.get(o as usize).vertex));
+        if !B::HAS_STREAMS {
+            let (models, mesh) = (&mut self.coordinates, &mut self.mesh);
+            expect_sound(coordinates::code(coder, models, mesh, &patches, self.precision, Some(&wanted)));
+        }
+        patches
     }
 
     /// Translates a record into the decoder's numbering.

@@ -7,6 +7,7 @@ use super::work::{SWEPT_PER_UNIT, Work};
 use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::bitstream::mixer::{MixedBit, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
+use crate::bitstream::streams::stream;
 use crate::bitstream::tables::Tables;
 use crate::lanes::Lanes;
 use crate::mesh::Surface;
@@ -335,6 +336,10 @@ impl<'a> Walk<'a> {
     fn decide<B: BitCoder>(&mut self, coder: &mut B, corner: u32, is_seed: bool) -> Result<(), Malformed> {
         let face = corner / 3;
         let wanted = self.target.map_or(NOT_IN_PATCH, |t| t.patch_of_face[face as usize]);
+        if B::HAS_STREAMS {
+            let is_in_patch = coder.decide(self.face_stream(corner, is_seed), wanted != NOT_IN_PATCH);
+            return self.settle(coder, corner, is_seed, wanted, is_in_patch);
+        }
         let start = Triangle {
             vertices: [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c)),
             valences: [next(corner), prev(corner), corner].map(|c| self.live_valence_at(c)),
@@ -348,6 +353,22 @@ impl<'a> Walk<'a> {
         let tables = Tables::get();
         let is_in_patch =
             self.models.in_patch.code(coder, tables, contexts, &[], set, wanted != NOT_IN_PATCH);
+        self.polygon = Polygon::of_triangle(&start, usize::from(!is_seed));
+        self.fit = Fit::Is;
+        self.settle(coder, corner, is_seed, wanted, is_in_patch)
+    }
+
+    /// Keeps the face of `corner`, or makes a patch of it and what follows.
+    #[inline(always)]
+    fn settle<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        corner: u32,
+        is_seed: bool,
+        wanted: u32,
+        is_in_patch: bool,
+    ) -> Result<(), Malformed> {
+        let face = corner / 3;
         if !is_in_patch {
             self.mark(face, Face::Kept);
             self.gates.push_back(next(corner));
@@ -358,8 +379,6 @@ impl<'a> Walk<'a> {
             return Ok(());
         }
         self.check_room()?;
-        self.polygon = Polygon::of_triangle(&start, usize::from(!is_seed));
-        self.fit = Fit::Is;
         self.take(face);
         self.frontier.extend([prev(corner), next(corner)]);
         if is_seed {
@@ -427,6 +446,11 @@ impl<'a> Walk<'a> {
 
     /// Codes whether the patch goes on across the edge that `inside` faces.
     fn code_growth<B: BitCoder>(&mut self, coder: &mut B, inside: u32, wanted: u32) -> bool {
+        if B::HAS_STREAMS {
+            let Some(beyond) = self.undecided_across(inside) else { return false };
+            let grows = self.target.is_some_and(|t| t.patch_of_face[(beyond / 3) as usize] == wanted);
+            return coder.decide(self.growth_stream(beyond), grows);
+        }
         let known =
             |inside: u32| self.growths.iter().flatten().find(|growth| growth.inside == inside).copied();
         let Some(Growth { fit, .. }) = known(inside).or_else(|| self.growth(inside)) else { return false };
@@ -465,6 +489,24 @@ impl<'a> Walk<'a> {
         }
         self.patches.finish(open_edge);
         Ok(())
+    }
+
+    /// Which stream says whether a face is in a patch.
+    #[inline]
+    fn face_stream(&self, corner: u32, is_seed: bool) -> usize {
+        let tip = self.around[self.surface.vertex(corner) as usize];
+        let is_beside_patch = !is_seed && self.state_across(corner) == Face::InPatch as usize;
+        let live = (tip.live_valence() - 3).clamp(0, 4) as usize;
+        stream::IN_PATCH + (live * 2 + usize::from(tip.touched > 0)) * 2 + usize::from(is_beside_patch)
+    }
+
+    /// Which stream says whether a patch grows over the face of `beyond`.
+    #[inline]
+    fn growth_stream(&self, beyond: u32) -> usize {
+        let (_, faces) = self.patches.unfinished();
+        let far = self.around[self.surface.vertex(beyond) as usize];
+        let live = (far.live_valence() - 4).clamp(0, 2) as usize;
+        stream::GROW + (faces.len().min(4) - 1) * 6 + live * 2 + usize::from(far.touched > 0)
     }
 
     fn state_across(&self, corner: u32) -> usize {

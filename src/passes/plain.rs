@@ -1,0 +1,121 @@
+//! Coordinates of the profile *fast* (`format/SPEC.md`, section 7.6): one fixed linear prediction from
+//! ring and coarse tips, differences as symbols.
+
+use super::Malformed;
+use super::patch::{Patches, Star};
+use super::work::Work;
+use crate::bitstream::range_coder::BitCoder;
+use crate::bitstream::streams::stream;
+use crate::bitstream::tables::log2;
+use crate::lanes::Lanes;
+use crate::mesh::surface::NO_CORNER;
+
+/// Share of the parallelograms' mean distance from the ring's mean.
+const TIP_SHARE: f32 = 0.5;
+/// Expected sizes of residuals that streams of symbols tell apart, by powers of two.
+const CLASSES: usize = stream::NUM_SYMBOLS / 2;
+
+/// What is known of the vertices so far.
+pub(crate) struct Located<'a> {
+    pub(crate) positions: &'a mut Vec<[i32; 3]>,
+    pub(crate) roughness: &'a mut Vec<[i8; 2]>,
+}
+
+/// Codes the cell of the vertex inside `star`, the next one without a position.
+pub(crate) fn code_vertex<B: BitCoder>(
+    coder: &mut B,
+    mesh: &mut Located,
+    patches: &Patches,
+    patch: usize,
+    star: &Star,
+    limit: i64,
+    wanted: [i32; 3],
+) -> Result<(), Malformed> {
+    let tips = patches.coarse_tips(patch);
+    let first = patches.first_edge(patch);
+    let Located { positions, roughness } = mesh;
+    let cell = |v: u32| positions[v as usize];
+    let origin = cell(star.ring[0]);
+    let point = |v: u32| Lanes::between(origin, cell(v));
+    let degree = star.ring.len();
+    let share = 1.0 / degree as f32;
+    let mut sum = Lanes::ZERO;
+    let mut over = (Lanes::ZERO, 0.0);
+    let mut normal = Lanes::ZERO;
+    let mut rough = [0; 2];
+    let mut before = point(star.ring[degree - 1]);
+    let mut edge = first + degree - 1;
+    let is_open = star.outer.len() < degree;
+    for (i, &v) in star.ring.iter().enumerate() {
+        let p = point(v);
+        sum += p;
+        let [along, across] = roughness[v as usize];
+        rough = [rough[0] + i32::from(along), rough[1] + i32::from(across)];
+        normal += before.cross(p);
+        // Across the edge from the vertex before to this one; the first of an open ring is none.
+        let tip = tips[edge % tips.len()];
+        if tip != NO_CORNER && !(is_open && i == 0) {
+            over.0 += before + p - point(tip);
+            over.1 += 1.0;
+        }
+        edge += 1;
+        before = p;
+    }
+    let mean = sum * share;
+    let guess = mean + (over.0 - mean * over.1) * (TIP_SHARE * share);
+    let extent = (point(star.ring[degree / 2]) - mean).abs();
+    let length = (extent.0[0] + extent.0[1]) + extent.0[2];
+    let log_length = log2(length + 1.0);
+    let class = |rough: i32| {
+        let log_size = log_length + rough as f32 * (share * 0.125);
+        2 * ((log_size + 2.0).clamp(0.0, (CLASSES - 1) as f32) as usize)
+    };
+    let symbols = [stream::SYMBOLS + class(rough[0]), stream::SYMBOLS + 1 + class(rough[1])];
+    let [x, y, z, _] = normal.abs().0;
+    let across = if x > y && x > z { 0 } else { 1 + usize::from(z >= y) };
+    let mut position = [0; 3];
+    let mut sizes = [0; 2];
+    for axis in 0..3 {
+        // Within 32 bits, whatever the cells are.
+        let nearest = (guess.0[axis] + 0.5).floor().clamp(-1e9, 1e9) as i32;
+        let expected = origin[axis] + nearest;
+        let difference = wanted[axis] - expected;
+        let is_across = usize::from(axis == across);
+        let difference = coder.difference(symbols[is_across], difference).ok_or(OUTSIDE)?;
+        let cell = i64::from(expected) + i64::from(difference);
+        if !(0..limit).contains(&cell) {
+            return Err(OUTSIDE);
+        }
+        position[axis] = cell as i32;
+        sizes[is_across] += difference.unsigned_abs() >> (1 - is_across);
+    }
+    positions.push(position);
+    roughness.push(sizes.map(|size| {
+        let log_share = log2(size as f32 + 0.5) - log_length;
+        (log_share * 8.0).clamp(-120.0, 120.0) as i8
+    }));
+    Ok(())
+}
+
+const OUTSIDE: Malformed = Malformed("a vertex lies outside the grid");
+
+/// Codes the last bits of all coordinates, which are doubled already, from vertex `next` on; true if all
+/// are done.
+pub(crate) fn refine_some<B: BitCoder>(
+    coder: &mut B,
+    positions: &mut [[i32; 3]],
+    next: &mut usize,
+    target: Option<&[[i32; 3]]>,
+    work: &mut Work,
+) -> bool {
+    for (v, position) in positions.iter_mut().enumerate().skip(*next) {
+        if !work.take(1) {
+            *next = v;
+            return false;
+        }
+        for (axis, c) in position.iter_mut().enumerate() {
+            *c += i32::from(coder.decide(stream::RAW, target.is_some_and(|t| t[v][axis] > *c)));
+        }
+    }
+    true
+}

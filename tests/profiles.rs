@@ -1,0 +1,88 @@
+//! All profiles of a mesh decode to the same meshes, pass by pass.
+#![cfg(all(feature = "encoder", feature = "fast"))]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use common::chunks;
+use common::exact::assert_round_trip;
+use common::kinds::every_kind;
+use common::*;
+use lwc::{DecodeError, Decoder, EncodeOptions, Limits, Partition, Profile, Step, TriMesh, encode};
+
+fn stream(mesh: &TriMesh, profile: Profile, partition: Partition) -> Vec<u8> {
+    let mut options = EncodeOptions::default();
+    options.profile = profile;
+    options.partition = partition;
+    options.steps_per_edge = Some(6.0);
+    encode(mesh, &options).unwrap().bytes
+}
+
+/// Level, precision and checksum after each pass, decoded in slices of `work`.
+fn meshes(stream: &[u8], work: u32) -> Vec<(u32, u32, u32)> {
+    let mut decoder = Decoder::new(Limits::default());
+    decoder.feed(stream).unwrap();
+    let mut meshes = Vec::new();
+    loop {
+        match decoder.step_within(work).unwrap() {
+            Step::Finished(update) => {
+                let mesh = decoder.mesh().unwrap();
+                meshes.push((update.pass.level, update.pass.precision, mesh.checksum()));
+            }
+            Step::Unfinished => {}
+            Step::Waiting => break,
+        }
+    }
+    assert!(decoder.is_complete());
+    meshes
+}
+
+#[test]
+fn every_profile_gives_the_same_meshes() {
+    for (name, mesh) in every_kind() {
+        for partition in Partition::ALL {
+            let small = meshes(&stream(&mesh, Profile::Small, partition), u32::MAX);
+            let fast = stream(&mesh, Profile::Fast, partition);
+            assert_eq!(meshes(&fast, u32::MAX), small, "{name}, {}", partition.name());
+            assert_eq!(meshes(&fast, 7), small, "{name}, {}, in slices", partition.name());
+        }
+    }
+}
+
+#[test]
+fn fast_streams_return_at_every_precision() {
+    for quantization in [1, 8, 16, 30] {
+        for (name, mesh) in [("torus", noisy(torus(20, 9), 1, 0.02)), ("soup", soup(40, 90, 3))] {
+            let mut options = EncodeOptions::default();
+            (options.profile, options.quantization) = (Profile::Fast, quantization);
+            let encoded = assert_round_trip(&mesh, &options, name);
+            assert_eq!(encoded.info.profile(), Profile::Fast);
+        }
+    }
+}
+
+/// A stream that is cut gives the mesh of its last whole pass, and the bytes may come one by one.
+#[test]
+fn fast_streams_can_be_cut() {
+    let stream = stream(&noisy(torus(20, 9), 1, 0.02), Profile::Fast, Partition::Balanced);
+    let whole = meshes(&stream, u32::MAX);
+    let mut decoder = Decoder::new(Limits::default());
+    for byte in stream.chunks(1) {
+        for update in decoder.push(byte).unwrap() {
+            let mesh = decoder.mesh().unwrap();
+            assert_eq!(whole[decoder.passes_done() - 1].2, mesh.checksum(), "{update:?}");
+        }
+        let preview = decoder.preview().map(|mesh| mesh.num_triangles());
+        assert_eq!(preview, decoder.mesh().map(|mesh| mesh.num_triangles()));
+    }
+    assert_eq!(decoder.passes_done(), whole.len());
+}
+
+#[test]
+fn profiles_to_come_are_unsupported() {
+    let mut chunks = chunks::split(&stream(&torus(9, 5), Profile::Small, Partition::Balanced));
+    chunks[0].payload[0] |= 3 << 2;
+    let stream = chunks::join(&chunks);
+    let error = Decoder::new(Limits::default()).push(&stream).unwrap_err();
+    assert!(matches!(&error, DecodeError::Unsupported(what) if what.contains("profile 3")), "{error}");
+}
