@@ -3,7 +3,9 @@
 //! Grid and comparison are written a second time here, so that encoder and decoder cannot agree on a mistake.
 
 use super::exit::Failure;
-use lwc::{Decoder, Encoded, Limits, TriMesh};
+use super::verify_attributes;
+use lwc::mesh::Attributes;
+use lwc::{Decoder, EncodeOptions, Encoded, Limits, TriMesh};
 
 /// Sizes of the pieces that the decoder gets, over and over: one byte, and lengths that divide nothing.
 const PIECES: [usize; 6] = [1, 3, 17, 997, 65_521, 7];
@@ -13,9 +15,15 @@ const PIECES: [usize; 6] = [1, 3, 17, 997, 65_521, 7];
 ///
 /// # Errors
 /// If anything differs.
-pub fn verify(mesh: &TriMesh, precision: u32, encoded: &Encoded) -> Result<(), Failure> {
+pub fn verify(
+    mesh: &TriMesh,
+    attributes: &Attributes,
+    options: &EncodeOptions,
+    encoded: &Encoded,
+) -> Result<(), Failure> {
     let decoder = decode(encoded).map_err(Failure::Verification)?;
-    compare(mesh, precision, encoded, &decoder).map_err(Failure::Verification)
+    compare(mesh, options.quantization, encoded, &decoder).map_err(Failure::Verification)?;
+    verify_attributes::compare(mesh, attributes, options, &decoder).map_err(Failure::Verification)
 }
 
 fn decode(encoded: &Encoded) -> Result<Decoder, String> {
@@ -76,11 +84,13 @@ fn compare(mesh: &TriMesh, precision: u32, encoded: &Encoded, decoder: &Decoder)
 type Cell = [i32; 3];
 
 /// A mesh on the grid.
-struct Quantised {
+pub struct Quantised {
     origin: [f64; 3],
     side: f64,
     /// Vertices that usable faces have.
     num_vertices: usize,
+    /// Of every vertex.
+    pub cells: Vec<Cell>,
     /// Usable faces, see [`sorted`].
     triangles: Vec<[Cell; 3]>,
 }
@@ -88,7 +98,7 @@ struct Quantised {
 impl Quantised {
     /// g = floor((x − min)·(2^q − 1)/s + ½) per axis: min per axis and s the longest side, both over the
     /// vertices of the faces with three different vertices.
-    fn new(mesh: &TriMesh, precision: u32) -> Self {
+    pub fn new(mesh: &TriMesh, precision: u32) -> Self {
         let usable = || mesh.triangles().iter().filter(|[a, b, c]| a != b && b != c && c != a);
         let mut is_used = vec![false; mesh.num_vertices()];
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -113,14 +123,19 @@ impl Quantised {
         };
         let triangles = sorted(usable().map(|t| t.map(cell)));
         let num_vertices = is_used.iter().filter(|&&used| used).count();
-        Self { origin: low, side, num_vertices, triangles }
+        let cells = (0..mesh.num_vertices() as u32).map(cell).collect();
+        Self { origin: low, side, num_vertices, cells, triangles }
     }
+}
+
+/// The same triangle from its smallest corner on.
+pub fn turned([a, b, c]: [Cell; 3]) -> [Cell; 3] {
+    [a, b, c].min([b, c, a]).min([c, a, b])
 }
 
 /// Triangles in an order that depends on nothing but the multiset of oriented triangles: each begins with
 /// the corner that makes it smallest.
 fn sorted(triangles: impl Iterator<Item = [Cell; 3]>) -> Vec<[Cell; 3]> {
-    let turned = |[a, b, c]: [Cell; 3]| [a, b, c].min([b, c, a]).min([c, a, b]);
     let mut triangles: Vec<_> = triangles.map(turned).collect();
     triangles.sort_unstable();
     triangles
@@ -139,7 +154,6 @@ fn num_missing(wanted: &[[Cell; 3]], found: &[[Cell; 3]]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lwc::EncodeOptions;
 
     fn bumpy_grid() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         let n = 12_u32;
@@ -153,6 +167,12 @@ mod tests {
 
     fn mesh(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> TriMesh {
         TriMesh::new(positions, triangles).unwrap()
+    }
+
+    fn verify(mesh: &TriMesh, precision: u32, encoded: &Encoded) -> Result<(), Failure> {
+        let mut options = EncodeOptions::default();
+        options.quantization = precision;
+        super::verify(mesh, &Attributes::default(), &options, encoded)
     }
 
     fn encoded(mesh: &TriMesh) -> Encoded {
