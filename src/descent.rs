@@ -3,7 +3,7 @@
 use crate::descriptors::{self, Descriptor, Features, Window};
 use crate::levels::Level;
 use crate::mesh::Surface;
-use crate::partition::{Geometry, Optimize, Partition, remove_level};
+use crate::partition::{Geometry, Optimize, Partition, is_coarse, remove_level};
 use crate::simplify::canonical::Anchors;
 use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, Seams, ShrinkingSurface};
@@ -170,11 +170,21 @@ impl Iterator for Descent<'_> {
             &self.level.vertices,
             &scores,
         );
+        if record.len() == 0 && self.seams.hold() && !is_coarse(self.level.vertices.len(), &self.shrinking) {
+            self.seams.loosen();
+            return self.next();
+        }
         if record.len() == 0 {
             return None;
         }
         let finer = std::mem::replace(&mut self.level, Level::collect(&self.shrinking));
-        self.is_over = (record.len() as f64) < LEAST_SHARE * finer.vertices.len() as f64;
+        let is_little = (record.len() as f64) < LEAST_SHARE * finer.vertices.len() as f64;
+        let num_vertices = self.level.vertices.len();
+        if is_little && self.seams.hold() && !is_coarse(num_vertices, &self.shrinking) {
+            self.seams.loosen();
+        } else {
+            self.is_over = is_little;
+        }
         self.settings.window.radius *= self.settings.growth;
         self.depth += 1;
         Some((finer, record))

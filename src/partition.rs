@@ -219,16 +219,21 @@ fn remove_as_decoded(
     let mut filler = HoleFiller::default();
     for corner in patches.into_iter().chain(ears) {
         surface.read_star_from(corner, &mut star);
-        let diagonal = match seams.demand(&star) {
-            Demand::Diagonal(diagonal) => Some(diagonal),
-            Demand::Stay if seams.hold() => continue,
-            _ => None,
-        };
+        let mut demand = seams.demand(&star);
         let Geometry { grid, positions } = geometry;
-        let mut fill = |diagonal| filler.fill(surface, &star, grid, positions, tolerance, diagonal).is_some();
-        let is_wish = diagonal.is_some() && !seams.hold();
-        let diagonal = diagonal.filter(|&d| !is_wish || fill(Some(d)));
-        let filled = filler.fill(surface, &star, grid, positions, tolerance, diagonal);
+        if demand != Demand::None {
+            let mut is_met = |d| filler.fill(surface, &star, grid, positions, tolerance, d).is_some();
+            if matches!(demand, Demand::Diagonal(_)) && !is_met(demand) {
+                demand = seams.demand_less(&star);
+            }
+            if !seams.hold() && !is_met(demand) {
+                demand = Demand::None;
+            }
+        }
+        if demand == Demand::Stay {
+            continue;
+        }
+        let filled = filler.fill(surface, &star, grid, positions, tolerance, demand);
         let Some(ears) = filled else { continue };
         memory.hand_on(&star);
         let faces = surface.remove(&star, ears);
@@ -275,23 +280,28 @@ fn candidates(
     free
 }
 
+/// Whether so few vertices are left that they may as well be the base, if seams want them.
+pub(crate) fn is_coarse(num_vertices: usize, surface: &ShrinkingSurface) -> bool {
+    /// Share of the vertices of the finest level.
+    const COARSE: f64 = 1.0 / 32.0;
+    num_vertices as f64 <= COARSE * surface.surface.corner_of.len() as f64
+}
+
 /// Keeps the vertices where seams end or meet, as long as there are others, or the level is coarse: where seams are
 /// everywhere they are no reason to stay.
 fn leave_seams(surface: &ShrinkingSurface, seams: &mut Seams, num_vertices: usize, free: &mut Vec<u32>) {
     /// Share of the vertices that could go otherwise.
     const LEAST_FREE: f64 = 0.125;
-    /// Share of the vertices of the finest level.
-    const COARSE: f64 = 1.0 / 32.0;
     if !seams.hold() {
         return;
     }
     let mut star = Star::default();
     let kept: Vec<u32> = free.iter().copied().filter(|&v| may_go(seams, surface, v, &mut star)).collect();
-    let is_coarse = num_vertices as f64 <= COARSE * surface.surface.corner_of.len() as f64;
-    if is_coarse || kept.len() as f64 >= LEAST_FREE * free.len() as f64 {
+    if is_coarse(num_vertices, surface) || kept.len() as f64 >= LEAST_FREE * free.len() as f64 {
         *free = kept;
     } else {
-        seams.break_up();
+        seams.loosen();
+        leave_seams(surface, seams, num_vertices, free);
     }
 }
 

@@ -117,6 +117,31 @@ fn check(streams: &[(String, Vec<u8>)], folder: &Path) {
     assert_eq!(found.lines().count(), recorded.lines().count());
 }
 
+/// The lines of `attributes.txt` for one stream: a checksum after each pass and the values behind it.
+fn attribute_lines_of(name: &str, stream: &[u8]) -> String {
+    let info = StreamInfo::read(stream).unwrap().unwrap();
+    let mut lines = String::new();
+    for (pass, end) in info.passes().iter().map(|pass| pass.end as usize).enumerate() {
+        let mut decoder = Decoder::new(Limits::default());
+        decoder.push(&stream[..end]).unwrap();
+        let mesh = decoder.mesh().unwrap().to_tri_mesh();
+        let attributes = decoder.attributes();
+        assert!(attributes.list.iter().all(|attribute| attribute.validate(&mesh).is_ok()), "{name}");
+        if !attributes.list.is_empty() {
+            writeln!(lines, "{name} {pass} {:08x}", decoder.attribute_checksum()).unwrap();
+        }
+    }
+    lines
+}
+
+#[test]
+fn the_attributes_of_every_golden_stream_decode_to_their_checksums() {
+    let recorded = std::fs::read_to_string(folder().join("attributes.txt")).unwrap();
+    let found: String = streams().iter().map(|(name, stream)| attribute_lines_of(name, stream)).collect();
+    assert_eq!(found, recorded);
+    assert!(found.lines().count() > 10);
+}
+
 #[test]
 fn the_golden_streams_are_small() {
     for (name, stream) in streams() {
@@ -158,7 +183,8 @@ fn the_golden_streams_cover_the_syntax() {
             ),
             ("refinement last", kinds.last() == Some(&PassKind::Refine)),
             ("padding", rows.iter().enumerate().any(|(i, row)| is_padded(i, row))),
-            ("unknown chunk", chunks.iter().any(|c| !b"HpLBSRtgixo".contains(&c.kind))),
+            ("attributes", chunks.iter().any(|c| c.kind == b'd') && chunks.iter().any(|c| c.kind == b'a')),
+            ("unknown chunk", chunks.iter().any(|c| !b"HpdLBSRatgixo".contains(&c.kind))),
             ("glue in the base mesh", chunks.iter().filter(|c| c.kind == b'g').count() == 1),
             ("glue in splits", chunks.iter().filter(|c| c.kind == b'g').count() > 1),
             ("loose", chunks.iter().any(|c| c.kind == b'i')),
@@ -182,7 +208,8 @@ mod make {
     use super::common::kinds::beside;
     use super::common::*;
     use lwc::descriptors::Descriptor;
-    use lwc::{EncodeOptions, Partition, TriMesh, encode};
+    use lwc::mesh::{Attribute, Domain, NO_ROW, Semantic, Values};
+    use lwc::{EncodeOptions, Partition, TriMesh, encode, encode_with_attributes};
     use std::path::Path;
     use std::sync::Once;
 
@@ -206,12 +233,17 @@ mod make {
         std::fs::create_dir_all(folder).unwrap();
         streams.sort();
         let mut checksums = super::HEADING.to_owned();
+        let mut attributes = String::new();
         for (name, stream) in streams {
             let name = format!("{name}.lwc");
             std::fs::write(folder.join(&name), &stream).unwrap();
             checksums += &super::lines_of(&name, &stream);
+            attributes += &super::attribute_lines_of(&name, &stream);
         }
         std::fs::write(folder.join("checksums.txt"), checksums).unwrap();
+        if !attributes.is_empty() {
+            std::fs::write(folder.join("attributes.txt"), attributes).unwrap();
+        }
     }
 
     #[cfg(feature = "fast")]
@@ -238,6 +270,11 @@ mod make {
         let mut options = EncodeOptions::default();
         change(&mut options);
         encode(mesh, &options).unwrap().bytes
+    }
+
+    fn attributed(mesh: &TriMesh, list: Vec<Attribute>) -> Vec<u8> {
+        let (attributes, options) = (attributed::all(list), EncodeOptions::default());
+        encode_with_attributes(mesh, &attributes, &options, &|_| {}).unwrap().bytes
     }
 
     fn all() -> Vec<(&'static str, Vec<u8>)> {
@@ -311,6 +348,27 @@ mod make {
                 let (positions, mut triangles) = noisy(grid(12, 12, bumpy), 6, 0.02).into_parts();
                 triangles.iter_mut().skip(60).step_by(2).for_each(|t| t.swap(0, 1));
                 stream(&build(positions, triangles), |o| o.quantization = 8)
+            }),
+            ("colours", {
+                let mesh = noisy(sphere(2), 10, 0.02);
+                attributed(&mesh, vec![attributed::colours(&mesh)])
+            }),
+            ("texture-seams", {
+                let (mesh, uv) = attributed::atlas(18, 9);
+                attributed(&mesh, vec![uv])
+            }),
+            ("flat-normals", {
+                let mesh = noisy(sphere(1), 11, 0.02);
+                attributed(&mesh, vec![attributed::flat_normals(&mesh)])
+            }),
+            ("materials", {
+                let (mesh, mut uv) = attributed::atlas(12, 8);
+                let mut rows: Vec<u32> = (0..uv.num_rows() as u32).collect();
+                rows[30..90].fill(NO_ROW);
+                uv.indices = Some(rows);
+                let areas = (0..mesh.num_triangles()).map(|t| (t as f64 * 0.1).sin()).collect();
+                let areas = Attribute::new("area", Semantic::Generic, Domain::Face, 1, Values::F64(areas));
+                attributed(&mesh, vec![attributed::materials(&mesh), areas, uv])
             }),
         ]
     }

@@ -68,7 +68,8 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     if args.verify {
         let start = Instant::now();
         let _spinner = ui.spinner("verifying");
-        verify::verify(&file.mesh, &args.options(), &encoded).with_context(|| name.clone())?;
+        verify::verify(&file.mesh, &file.attributes, &args.options(), &encoded)
+            .with_context(|| name.clone())?;
         ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
     }
     destination.write(|out| out.write_all(&encoded.bytes))?;
@@ -221,7 +222,7 @@ impl Report<'_> {
             "corners_welded": read.corners_welded,
             "points_left_out": read.points_left_out,
             "ignored": self.file.report.ignored.iter().chain(&self.left_out).collect::<Vec<_>>(),
-            "attributes": passes::attributes_to_json(info),
+            "attributes": passes::attributes_to_json(info, &[]),
             "degenerate_faces": repair.degenerate_faces,
             "isolated_vertices": repair.isolated_vertices,
             "repeated_vertices": repair.repeated_vertices,

@@ -20,32 +20,45 @@ pub fn run(args: &Info, ui: &Ui) -> anyhow::Result<()> {
     }
     let source = StreamSource::new(args.input.as_deref())?;
     let mut reader = source.open()?;
-    let (info, present) = read(&mut *reader).with_context(|| source.name())?;
+    let (info, present, bytes) = read(&mut *reader).with_context(|| source.name())?;
+    let attribute_bytes = attribute_bytes(&bytes, args);
     let mut out = BufWriter::new(io::stdout().lock());
     if args.json {
-        print_json(out, &to_json(&info, &source.name(), present))?;
+        print_json(out, &to_json(&info, &attribute_bytes, &source.name(), present))?;
     } else {
-        print(&mut out, &info, &source.name(), present)?;
+        print(&mut out, &info, &attribute_bytes, &source.name(), present)?;
         out.flush()?;
     }
     Ok(())
 }
 
-/// What the stream says, and how many bytes of it there are.
-fn read(reader: &mut dyn Read) -> anyhow::Result<(StreamInfo, u64)> {
+/// What the stream says, and how many bytes of it there are; the bytes themselves if it has attributes.
+fn read(reader: &mut dyn Read) -> anyhow::Result<(StreamInfo, u64, Vec<u8>)> {
     let mut head = Vec::new();
     let mut wanted = FIRST_BYTES;
     loop {
         let read = reader.take(wanted).read_to_end(&mut head).map_err(Failure::Input)?;
         if let Some(info) = StreamInfo::read(&head)? {
+            if !info.attributes().is_empty() {
+                reader.read_to_end(&mut head).map_err(Failure::Input)?;
+                return Ok((info, head.len() as u64, head));
+            }
             let rest = io::copy(reader, &mut io::sink()).map_err(Failure::Input)?;
-            return Ok((info, head.len() as u64 + rest));
+            return Ok((info, head.len() as u64 + rest, Vec::new()));
         }
         if (read as u64) < wanted {
             return Err(Failure::CutTable.into());
         }
         wanted = head.len() as u64;
     }
+}
+
+/// Bytes of each attribute, as far as the stream goes: only decoding tells.
+fn attribute_bytes(bytes: &[u8], args: &Info) -> Vec<u64> {
+    let mut decoder = lwc::Decoder::new(args.limits.limits());
+    // What is wrong with the stream is not asked here.
+    let _ = decoder.push(bytes);
+    decoder.attribute_bytes().to_vec()
 }
 
 /// Bytes that hold the table of most streams; twice as many are tried each time.
@@ -75,7 +88,13 @@ fn passes_present(info: &StreamInfo, present: u64) -> usize {
     info.passes().iter().filter(|pass| pass.end <= present).count()
 }
 
-fn print(out: &mut dyn Write, info: &StreamInfo, name: &str, present: u64) -> io::Result<()> {
+fn print(
+    out: &mut dyn Write,
+    info: &StreamInfo,
+    attribute_bytes: &[u64],
+    name: &str,
+    present: u64,
+) -> io::Result<()> {
     let (total, passes) = (info.total_bytes(), info.passes().len());
     if present < total {
         let here = passes_present(info, present);
@@ -104,11 +123,12 @@ fn print(out: &mut dyn Write, info: &StreamInfo, name: &str, present: u64) -> io
         writeln!(out, "partition   {partition}")?;
     }
     writeln!(out, "profile     {}", info.profile().name())?;
+    passes::print_attributes(&mut *out, info, attribute_bytes)?;
     writeln!(out, "header      {} bytes\n", header_bytes(info))?;
     passes::print(out, info, present)
 }
 
-fn to_json(info: &StreamInfo, name: &str, present: u64) -> Value {
+fn to_json(info: &StreamInfo, attribute_bytes: &[u64], name: &str, present: u64) -> Value {
     let finest = info.passes().last();
     let window = info.window();
     json!({
@@ -132,6 +152,7 @@ fn to_json(info: &StreamInfo, name: &str, present: u64) -> Value {
         "growth": window.map(|w| w.2),
         "partition": partition(info),
         "profile": info.profile().name(),
+        "attributes": passes::attributes_to_json(info, attribute_bytes),
         "passes": passes::to_json(info, present),
         "trailing": passes::trailing_to_json(info, present),
     })

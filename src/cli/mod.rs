@@ -19,4 +19,5 @@ mod rate_distortion;
 pub mod render;
 pub mod ui;
 mod verify;
+mod verify_attributes;
 pub mod view;

@@ -39,10 +39,26 @@ pub fn to_json(info: &StreamInfo, present: u64) -> Value {
     info.passes().iter().enumerate().map(row).collect()
 }
 
-/// One object per attribute.
-pub fn attributes_to_json(info: &StreamInfo) -> Value {
-    let row = |attribute: &lwc::AttributeInfo| {
+/// One line per attribute; `bytes` of each if they are known.
+///
+/// # Errors
+/// If `out` fails.
+pub fn print_attributes(mut out: impl Write, info: &StreamInfo, bytes: &[u64]) -> io::Result<()> {
+    for (i, attribute) in info.attributes().iter().enumerate() {
+        let size = bytes.get(i).map_or(String::new(), |&bytes| {
+            format!(", {bytes} bytes, {:.2} bits per vertex", bits_per_vertex(bytes, info))
+        });
+        let (name, bits, domain) = (&attribute.name, attribute.bits, attribute.domain);
+        writeln!(out, "attribute   {name}: {} × {bits} bits of {domain}{size}", attribute.num_components)?;
+    }
+    Ok(())
+}
+
+/// One object per attribute, with its bytes if they are known.
+pub fn attributes_to_json(info: &StreamInfo, bytes: &[u64]) -> Value {
+    let row = |(i, attribute): (usize, &lwc::AttributeInfo)| {
         json!({
+            "bytes": bytes.get(i),
             "name": attribute.name,
             "semantic": format!("{:?}", attribute.semantic),
             "domain": attribute.domain.to_string(),
@@ -51,7 +67,7 @@ pub fn attributes_to_json(info: &StreamInfo) -> Value {
             "bits": attribute.bits,
         })
     };
-    info.attributes().iter().map(row).collect()
+    info.attributes().iter().enumerate().map(row).collect()
 }
 
 /// One line per pass.

@@ -3,6 +3,8 @@
 //! Grid and comparison are written a second time here, so that encoder and decoder cannot agree on a mistake.
 
 use super::exit::Failure;
+use super::verify_attributes;
+use lwc::mesh::Attributes;
 use lwc::{Decoder, EncodeOptions, Encoded, Limits, TriMesh};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -15,13 +17,20 @@ const PIECES: [usize; 6] = [1, 3, 17, 997, 65_521, 7];
 ///
 /// # Errors
 /// If anything differs.
-pub fn verify(mesh: &TriMesh, options: &EncodeOptions, encoded: &Encoded) -> Result<(), Failure> {
+pub fn verify(
+    mesh: &TriMesh,
+    attributes: &Attributes,
+    options: &EncodeOptions,
+    encoded: &Encoded,
+) -> Result<(), Failure> {
     let check = || {
         let decoder = decode(encoded)?;
         let expected = Quantised::new(mesh, options, encoded.info.side());
         compare_surface(&expected, options.quantization, encoded, &decoder)?;
         let decoded = decoder.mesh().ok_or("there is no mesh")?.to_tri_mesh();
-        compare_whole(&kept(mesh, options), &decoded, &expected, options)
+        compare_whole(&kept(mesh, options), &decoded, &expected, options)?;
+        let cells: Vec<Cell> = mesh.positions().iter().map(|&p| expected.cell(p)).collect();
+        verify_attributes::compare(mesh, attributes, &cells, options, &decoder)
     };
     check().map_err(Failure::Verification)
 }
@@ -211,10 +220,14 @@ impl Quantised {
     }
 }
 
+/// The same triangle from its smallest corner on.
+pub fn turned([a, b, c]: [Cell; 3]) -> [Cell; 3] {
+    [a, b, c].min([b, c, a]).min([c, a, b])
+}
+
 /// Triangles in an order that depends on nothing but the multiset of oriented triangles: each begins with
 /// the corner that makes it smallest.
 fn sorted(triangles: impl Iterator<Item = [Cell; 3]>) -> Vec<[Cell; 3]> {
-    let turned = |[a, b, c]: [Cell; 3]| [a, b, c].min([b, c, a]).min([c, a, b]);
     let mut triangles: Vec<_> = triangles.map(turned).collect();
     triangles.sort_unstable();
     triangles
@@ -233,7 +246,6 @@ fn num_missing(wanted: &[[Cell; 3]], found: &[[Cell; 3]]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lwc::EncodeOptions;
 
     fn bumpy_grid() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         let n = 12_u32;
@@ -249,14 +261,14 @@ mod tests {
         TriMesh::new(positions, triangles).unwrap()
     }
 
-    fn encoded(mesh: &TriMesh) -> Encoded {
-        lwc::encode(mesh, &EncodeOptions::default()).unwrap()
-    }
-
     fn verify(mesh: &TriMesh, precision: u32, encoded: &Encoded) -> Result<(), Failure> {
         let mut options = EncodeOptions::default();
         options.quantization = precision;
-        super::verify(mesh, &options, encoded)
+        super::verify(mesh, &Attributes::default(), &options, encoded)
+    }
+
+    fn encoded(mesh: &TriMesh) -> Encoded {
+        lwc::encode(mesh, &EncodeOptions::default()).unwrap()
     }
 
     #[test]
@@ -268,12 +280,14 @@ mod tests {
         let mut options = EncodeOptions::default();
         let without = encoded(&mesh);
         (options.lossless, options.keep_order) = (true, true);
-        assert!(super::verify(&mesh, &options, &without).is_err());
+        assert!(super::verify(&mesh, &Attributes::default(), &options, &without).is_err());
         (options.keep_isolated, options.keep_degenerate) = (true, true);
-        super::verify(&mesh, &options, &lwc::encode(&mesh, &options).unwrap()).unwrap();
+        super::verify(&mesh, &Attributes::default(), &options, &lwc::encode(&mesh, &options).unwrap())
+            .unwrap();
         options.keep_order = false;
-        super::verify(&mesh, &options, &lwc::encode(&mesh, &options).unwrap()).unwrap();
-        assert!(super::verify(&mesh, &options, &without).is_err());
+        super::verify(&mesh, &Attributes::default(), &options, &lwc::encode(&mesh, &options).unwrap())
+            .unwrap();
+        assert!(super::verify(&mesh, &Attributes::default(), &options, &without).is_err());
     }
 
     #[test]

@@ -104,6 +104,18 @@ impl AttributeDecoder {
         self.collect(&ahead.layers)
     }
 
+    /// Checksum of the rows (`format/SPEC.md`, section 9).
+    pub(super) fn checksum(&self) -> u32 {
+        let mut hash = crc32fast::Hasher::new();
+        for layer in &self.state.layers {
+            for &row in &layer.rows.of {
+                let channels = if row == NO_ROW { &[-1][..] } else { layer.rows.get(row) };
+                channels.iter().for_each(|c| hash.update(&c.to_le_bytes()));
+            }
+        }
+        hash.finalize()
+    }
+
     fn collect(&self, layers: &[Layer]) -> Attributes {
         let mut attributes = Attributes::default();
         attributes.material_libraries.clone_from(&self.declarations.material_libraries);

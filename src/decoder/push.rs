@@ -449,6 +449,12 @@ impl Decoder {
         attributes.attributes(&self.passes.mesh, cut.map_or(&[], |(_, payload)| payload))
     }
 
+    /// Checksum of the values of all attributes that have come (`format/SPEC.md`, section 9): equal on every platform
+    /// for the same prefix of a stream.
+    pub fn attribute_checksum(&self) -> u32 {
+        self.attributes.as_ref().map_or(0, AttributeDecoder::checksum)
+    }
+
     /// Bytes of payload that each attribute has taken so far, to a few bytes per pass.
     pub fn attribute_bytes(&self) -> &[u64] {
         self.attributes.as_ref().map_or(&[], AttributeDecoder::bytes)

@@ -6,7 +6,7 @@
 
 use super::collapse::is_legal;
 use super::deviation::Deviation;
-use super::seams::Diagonal;
+use super::seams::Demand;
 use super::triangulate::EarClipper;
 use super::{ShrinkingSurface, Star};
 
@@ -27,8 +27,8 @@ pub(crate) struct HoleFiller {
 impl HoleFiller {
     /// The ears to cut, or `None` if no triangulation is legal or none that is fits. The one that is cheap to code
     /// ([`EarClipper`]) wins if its squared deviation is at most `tolerance` times that of the best
-    /// half-edge collapse. `grid` decides legality, `positions` distances. A `diagonal` that is given will be one of the
-    /// hole's.
+    /// half-edge collapse. `grid` decides legality, `positions` distances. Only holes that meet the
+    /// `demand` count.
     pub(crate) fn fill(
         &mut self,
         surface: &ShrinkingSurface,
@@ -36,7 +36,7 @@ impl HoleFiller {
         grid: &[[i32; 3]],
         positions: &[[f64; 3]],
         tolerance: f64,
-        diagonal: Option<Diagonal>,
+        demand: Demand,
     ) -> Option<&[usize]> {
         let degree = star.degree();
         if degree < 3 {
@@ -44,14 +44,16 @@ impl HoleFiller {
             self.ears.clear();
             return is_ear.then_some(&self.ears);
         }
-        let clipped = self.clipper.clip(surface, star, grid, diagonal);
+        let clipped = self.clipper.clip(surface, star, grid, demand);
         if tolerance == f64::INFINITY && clipped.is_some() {
             return clipped;
         }
         self.deviation.set(star, positions);
         let mut best = (f64::INFINITY, None);
         let mut least = f64::INFINITY;
-        let may_fan = |&i: &usize| diagonal.is_none_or(|diagonal| diagonal.ends().contains(&i));
+        let may_fan = |&i: &usize| {
+            demand == Demand::None || fan(i, degree).all(|ear| demand.allows([i, ear, (ear + 1) % degree]))
+        };
         let targets = (0..degree).filter(|&i| star.is_closed() || i == 0 || i == degree - 1);
         for target in targets.filter(may_fan) {
             let deviation = self.deviation.of(fan(target, degree), best.0);
@@ -86,6 +88,7 @@ fn fan(target: usize, degree: usize) -> impl Iterator<Item = usize> {
 mod tests {
     use super::*;
     use crate::mesh::Surface;
+    use crate::simplify::seams::Diagonal;
 
     #[test]
     fn a_vertex_stays_if_only_a_bad_hole_is_legal() {
@@ -93,19 +96,19 @@ mod tests {
         let mut triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
         let grid = [[0, 0, 10], [10, 0, 10], [0, 10, 0], [-10, 0, 10], [0, -10, 0], [0, 30, 10]];
         let positions = grid.map(|p| p.map(f64::from));
-        let fill = |triangles: &[[u32; 3]], num_vertices, diagonal| {
+        let fill = |triangles: &[[u32; 3]], num_vertices, demand| {
             let surface = Surface::from_triangles(triangles.to_vec(), num_vertices).unwrap();
             let surface = ShrinkingSurface::new(surface);
             let mut star = Star::default();
             surface.read_star(0, &mut star);
-            HoleFiller::default().fill(&surface, &star, &grid, &positions, 1.0, diagonal).map(<[usize]>::len)
+            HoleFiller::default().fill(&surface, &star, &grid, &positions, 1.0, demand).map(<[usize]>::len)
         };
-        assert_eq!(fill(&triangles, 5, None), Some(2));
+        assert_eq!(fill(&triangles, 5, Demand::None), Some(2));
         // Now 1 and 3 are neighbours already, so that the ridge cannot be closed.
         triangles.extend([[2, 1, 5], [3, 2, 5], [1, 3, 5]]);
-        assert_eq!(fill(&triangles, 6, None), None);
+        assert_eq!(fill(&triangles, 6, Demand::None), None);
         // Nor if a seam must run along it; across it would do.
-        let [along, across] = [[0, 2], [1, 3]].map(|ends| Some(Diagonal::new(ends, 4)));
+        let [along, across] = [[0, 2], [1, 3]].map(|ends| Demand::Diagonal(Diagonal::new(ends, 4)));
         assert_eq!(fill(&triangles, 6, along), None);
         assert_eq!(fill(&triangles, 6, across), Some(2));
     }

@@ -49,15 +49,46 @@ impl Diagonal {
     }
 }
 
-/// What seams want of a vertex that may go.
+/// What seams want of the hole that a vertex leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Demand {
-    /// No seam comes here.
+    /// Nothing.
     None,
-    /// One goes through.
+    /// A seam goes through: it should go on.
     Diagonal(Diagonal),
-    /// It ends here, or others come.
+    /// Seams end or meet. Nothing has to be said triangle by triangle if no place of this set, all of the ring's
+    /// `degree`, is cut off; but the triangles in the middle span what the seams part.
+    Uncut { places: u64, degree: usize },
+    /// The vertex has to stay.
     Stay,
+}
+
+impl Demand {
+    /// Whether a triangle over three places, the middle one of which is cut off, may be part of the hole.
+    pub(crate) fn allows(self, [before, ear, after]: [usize; 3]) -> bool {
+        match self {
+            Demand::None => true,
+            Demand::Diagonal(diagonal) => diagonal.allows([before, ear, after]),
+            Demand::Uncut { places, degree } => {
+                [[before, ear, after], [ear, after, before], [after, before, ear]]
+                    .into_iter()
+                    .all(|[x, y, z]| places >> y & 1 == 0 || (x + 1) % degree != y || (y + 1) % degree != z)
+            }
+            Demand::Stay => false,
+        }
+    }
+}
+
+/// How firmly seams are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd)]
+enum Grip {
+    /// Where they end or meet, vertices stay.
+    #[default]
+    Firm,
+    /// Those may go that leave nothing to say triangle by triangle.
+    Loose,
+    /// All may.
+    None,
 }
 
 /// Rows of one attribute, by the slots of a surface.
@@ -71,8 +102,7 @@ struct Track {
 #[derive(Default)]
 pub(crate) struct Seams {
     tracks: Vec<Track>,
-    /// Whether vertices that should stay have to go after all.
-    are_broken: bool,
+    grip: Grip,
     left: Vec<u32>,
     right: Vec<u32>,
 }
@@ -87,13 +117,13 @@ impl Seams {
         self.tracks.is_empty()
     }
 
-    /// Whether vertices that should stay do.
+    /// Whether there are vertices that have to stay.
     pub(crate) fn hold(&self) -> bool {
-        !self.are_broken && !self.is_empty()
+        self.grip < Grip::None && !self.is_empty()
     }
 
-    pub(crate) fn break_up(&mut self) {
-        self.are_broken = true;
+    pub(crate) fn loosen(&mut self) {
+        self.grip = if self.grip == Grip::Firm { Grip::Loose } else { Grip::None };
     }
 
     /// The row of each corner or face of an attribute.
@@ -101,16 +131,12 @@ impl Seams {
         &self.tracks[attribute].of
     }
 
-    /// What the seams at the star of a vertex want.
-    pub(crate) fn demand(&self, star: &Star) -> Demand {
+    /// Places of the ring to which seams run from the vertex of a star; those that count are below 64.
+    fn spokes(&self, star: &Star) -> u64 {
         let n = star.corners.len();
-        let mut spokes = (0..n).filter(|&i| {
-            let before = match i.checked_sub(1) {
-                Some(before) => star.corners[before],
-                None if star.is_closed() => star.corners[n - 1],
-                None => return false,
-            };
-            let after = star.corners[i];
+        let first = usize::from(!star.is_closed());
+        let is_seam = |&i: &usize| {
+            let (before, after) = (star.corners[(i + n - 1) % n], star.corners[i]);
             self.tracks.iter().any(|track| {
                 let differ = |a: u32, b: u32| track.of[a as usize] != track.of[b as usize];
                 match track.domain {
@@ -119,13 +145,38 @@ impl Seams {
                     Domain::Face => differ(before / 3, after / 3),
                 }
             })
-        });
-        match (spokes.next(), spokes.next(), spokes.next()) {
-            (None, ..) => Demand::None,
-            (Some(from), Some(to), None) if star.is_closed() && to - from > 1 && from + n - to > 1 => {
-                Demand::Diagonal(Diagonal::new([from, to], n))
-            }
-            _ => Demand::Stay,
+        };
+        (first..n.min(64)).filter(is_seam).fold(0, |places, i| places | 1 << i)
+    }
+
+    /// What the seams at the star of a vertex want most.
+    pub(crate) fn demand(&self, star: &Star) -> Demand {
+        let places = if self.is_empty() { 0 } else { self.spokes(star) };
+        if places == 0 {
+            return Demand::None;
+        }
+        let (from, to) = (places.trailing_zeros() as usize, 63 - places.leading_zeros() as usize);
+        let degree = star.degree();
+        if places.count_ones() == 2 && star.is_closed() && to - from > 1 && from + degree - to > 1 {
+            return Demand::Diagonal(Diagonal::new([from, to], degree));
+        }
+        self.demand_less(star)
+    }
+
+    /// What they are content with if there is no such hole.
+    pub(crate) fn demand_less(&self, star: &Star) -> Demand {
+        let (places, degree) = (self.spokes(star), star.degree());
+        let demand = Demand::Uncut { places, degree };
+        // Each hole has two triangles that cut a corner off, which are not next to each other.
+        let is_free = |i: usize| places >> i & 1 == 0;
+        let can_be = (4..64).contains(&degree)
+            && (0..degree).any(|i| is_free(i) && (i + 2..degree).any(|j| is_free(j) && j + 1 < i + degree));
+        match self.grip {
+            Grip::Firm => Demand::Stay,
+            Grip::Loose if can_be => demand,
+            Grip::Loose => Demand::Stay,
+            Grip::None if can_be => demand,
+            Grip::None => Demand::None,
         }
     }
 
@@ -279,15 +330,27 @@ mod tests {
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
         let surface = ShrinkingSurface::new(Surface::from_triangles(triangles, 7).unwrap());
         let mut star = Star::default();
-        let mut demand = |faces: [u32; 6]| {
+        let mut demand = |faces: [u32; 6], times: usize| {
             let mut seams = Seams::default();
+            (0..times).for_each(|_| seams.loosen());
             seams.follow(Domain::Face, faces.to_vec());
             surface.read_star(6, &mut star);
             seams.demand(&star)
         };
-        assert_eq!(demand([7; 6]), Demand::None);
-        assert_eq!(demand([0, 0, 1, 1, 2, 2]), Demand::Stay);
-        assert_eq!(demand([0, 0, 0, 0, 0, 2]), Demand::Stay, "the seam would run along the ring");
-        assert!(matches!(demand([0, 0, 0, 0, 1, 1]), Demand::Diagonal(_)));
+        assert_eq!(demand([7; 6], 0), Demand::None);
+        assert_eq!(demand([0, 0, 1, 1, 2, 2], 0), Demand::Stay);
+        assert_eq!(demand([0, 0, 0, 0, 0, 2], 0), Demand::Stay, "the seam would run along the ring");
+        assert!(matches!(demand([0, 0, 0, 0, 1, 1], 0), Demand::Diagonal(_)));
+        let Demand::Uncut { places, degree } = demand([0, 0, 1, 1, 2, 2], 1) else { panic!("they may go") };
+        assert_eq!((places.count_ones(), degree), (3, 6));
+        assert_eq!(demand([0, 1, 2, 3, 4, 5], 1), Demand::Stay);
+        assert_eq!(demand([0, 1, 2, 3, 4, 5], 2), Demand::None);
+    }
+
+    #[test]
+    fn places_that_are_not_to_be_cut_are_not() {
+        let demand = Demand::Uncut { places: 0b1010, degree: 5 };
+        assert!(!demand.allows([0, 1, 2]) && !demand.allows([1, 2, 0]) && !demand.allows([2, 3, 4]));
+        assert!(demand.allows([1, 2, 3]) && demand.allows([4, 0, 1]) && demand.allows([1, 3, 4]));
     }
 }

@@ -4,7 +4,7 @@
 
 use super::collapse::is_tetrahedral;
 use super::geometry::{area_vector, is_same_side};
-use super::seams::Diagonal;
+use super::seams::Demand;
 use super::shrinking::{ShrinkingSurface, Star};
 use crate::mesh::ears::{Bytes, Ear, Hole, MAX_CORNERS, MAX_VALENCE};
 
@@ -16,13 +16,13 @@ pub(crate) struct EarClipper {
 
 impl EarClipper {
     /// The ears to cut, or `None` if the hole has too many corners or the rule does not keep every
-    /// triangle on its side, every new edge new and the `diagonal` uncrossed. `grid` decides the sides.
+    /// triangle on its side, every new edge new and the `demand` met. `grid` decides the sides.
     pub(crate) fn clip(
         &mut self,
         surface: &ShrinkingSurface,
         star: &Star,
         grid: &[[i32; 3]],
-        diagonal: Option<Diagonal>,
+        demand: Demand,
     ) -> Option<&[usize]> {
         let degree = star.degree();
         let has_edge = |i: usize, j: usize| surface.has_edge(star.ring[i], star.ring[j]);
@@ -39,9 +39,7 @@ impl EarClipper {
             let keeps_side = side == [0; 3] || is_same_side(side, area_vector(cell(p), cell(c), cell(n)));
             // The edge that closes an open star has been tested.
             let closes = !star.is_closed() && (p, n) == (degree - 1, 0);
-            keeps_side
-                && diagonal.is_none_or(|d| d.allows([p, c, n]))
-                && (count == 3 || closes || !has_edge(p, n))
+            keeps_side && demand.allows([p, c, n]) && (count == 3 || closes || !has_edge(p, n))
         };
         let mut hole = Hole::new(valences(surface, star), degree);
         self.ears.clear();

@@ -1,6 +1,7 @@
 //! Procedural meshes for the tests. All are counter-clockwise seen from outside or above.
 #![allow(dead_code)]
 
+pub mod attributed;
 pub mod chunks;
 pub mod corpus;
 #[cfg(feature = "encoder")]

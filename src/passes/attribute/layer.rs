@@ -76,6 +76,8 @@ pub(crate) struct Desk {
     numbers: Scratch,
     corners: Vec<u32>,
     inherited: Vec<[u32; 2]>,
+    /// Faces of the patch at the edges of its polygon.
+    polygon: Vec<u32>,
     /// Corners that do not inherit, and what they would have.
     exceptions: Vec<(u32, u32)>,
     /// More rows that such a corner may repeat.
@@ -139,7 +141,7 @@ impl Layer {
                 ),
                 numbers: NumberModels::new(flavour, declaration.channel_range()),
                 symbols: PlainBits::new(1 << MODELLED_BITS),
-                inherited: PlainBits::new(11),
+                inherited: PlainBits::new(14),
                 has_seam: PlainBits::new(8),
                 seam: PlainBits::new(9),
             },
@@ -224,7 +226,7 @@ impl Layer {
         let closed = surface.fan(surface.corner_of[vertex as usize], &mut desk.corners);
         if let Some(patches) = patches {
             let star = Star { patches, patch: vertex as usize - first, vertex };
-            self.inherit_corners(coder, mesh, star, truth, desk);
+            self.inherit_corners(coder, mesh, star, closed, truth, desk);
         }
         let corners = std::mem::take(&mut desk.corners);
         self.code_seams(coder, mesh, vertex, &corners, closed, truth, desk);
@@ -304,6 +306,7 @@ impl Layer {
         coder: &mut B,
         mesh: &GridMesh,
         star: Star,
+        closed: bool,
         truth: Option<&Truth>,
         desk: &mut Desk,
     ) {
@@ -313,26 +316,38 @@ impl Layer {
                 if star.is_ear() { [prev(corner), next(corner)] } else { [next(corner), prev(corner)] };
             desk.inherited.push(ends.map(|c| self.rows.of[c as usize]));
         }
+        desk.polygon.clear();
+        desk.polygon.extend(star.polygon(desk.corners.len()).map(|corner| corner / 3));
+        // Where one triangle of the patch had both edges, it had one row for two corners of the star: the encoder kept
+        // the one of the triangle after.
+        let n = desk.polygon.len();
+        let polygon = std::mem::take(&mut desk.polygon);
+        let is_cut_off = |i: usize, end: usize| {
+            end == 1 && polygon[i] == polygon[(i + 1) % n] && (closed || i + 1 < n) && !star.is_ear()
+        };
         let corners = std::mem::take(&mut desk.corners);
         let inherited = std::mem::take(&mut desk.inherited);
         let ends = |i: usize| [next(corners[i]), prev(corners[i])];
         let mut is_kept = true;
         let mut num_torn = 0;
         for (i, rows) in inherited.iter().enumerate() {
-            for (corner, &row) in ends(i).into_iter().zip(rows) {
+            for (end, (corner, &row)) in ends(i).into_iter().zip(rows).enumerate() {
                 self.rows.of[corner as usize] = row;
                 is_kept &= truth.is_none() || wanted(truth, corner as usize, &self.rows).is(&self.rows, row);
-                num_torn += usize::from(self.fit_outside(mesh, star.vertex, corner, corners[i], row) == TORN);
+                let is_torn = is_cut_off(i, end)
+                    && self.fit_outside(mesh, star.vertex, corner, corners[i], row) == TORN;
+                num_torn += usize::from(is_torn);
             }
         }
         let is_kept = coder.is_guessing() || self.models.inherited.code(coder, num_torn.min(3), is_kept);
         desk.exceptions.clear();
         if !is_kept {
             for (i, rows) in inherited.iter().enumerate() {
-                for (corner, &row) in ends(i).into_iter().zip(rows) {
+                for (end, (corner, &row)) in ends(i).into_iter().zip(rows).enumerate() {
                     let wanted = wanted(truth, corner as usize, &self.rows);
                     let fit = self.fit_outside(mesh, star.vertex, corner, corners[i], row);
-                    if !self.models.inherited.code(coder, 4 + fit, wanted.is(&self.rows, row)) {
+                    let context = 4 + 3 * usize::from(is_cut_off(i, end)) + fit;
+                    if !self.models.inherited.code(coder, context, wanted.is(&self.rows, row)) {
                         desk.exceptions.push((corner, row));
                     }
                 }
@@ -340,7 +355,7 @@ impl Layer {
         }
         // Until they have rows of their own.
         desk.exceptions.iter().for_each(|&(corner, _)| self.rows.of[corner as usize] = NO_ROW);
-        (desk.corners, desk.inherited) = (corners, inherited);
+        (desk.corners, desk.inherited, desk.polygon) = (corners, inherited, polygon);
     }
 
     /// Rows of the corners of a star that do not inherit theirs.
@@ -433,7 +448,7 @@ impl Layer {
             self.rows.of[face] = *row;
         }
         let is_even = inherited.iter().all(|rows| *rows == inherited[0]);
-        let context = 7 + usize::from(is_even);
+        let context = 10 + usize::from(is_even);
         let is_kept = coder.is_guessing() || self.models.inherited.code(coder, context, is_kept);
         if !is_kept {
             for (&corner, [row, _]) in corners.iter().zip(&inherited) {
