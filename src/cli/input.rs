@@ -200,6 +200,7 @@ pub fn reached(decoder: &Decoder) -> Option<String> {
     let (info, mesh) = (decoder.info()?, decoder.mesh()?);
     let (level, finest) = (mesh.level(), info.finest_level());
     let has_all_passes = decoder.passes_done() == info.passes().len();
-    let missing = if has_all_passes && !decoder.is_complete() { ", before all that follows the passes" } else { "" };
+    let missing =
+        if has_all_passes && !decoder.is_complete() { ", before all that follows the passes" } else { "" };
     Some(format!("level {level} of {finest} at {} of {} bits{missing}", mesh.precision(), info.precision()))
 }
