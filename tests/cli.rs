@@ -280,11 +280,40 @@ fn what_is_dropped_is_counted() {
         "not kept: vt, vn",
         "1 degenerate face dropped",
         "1 vertex without faces dropped",
-        "3 vertices added",
     ] {
         assert!(stderr.contains(&format!("lwc: warning: odd.obj: {warning}")), "{warning}: {stderr}");
     }
     assert_eq!(workshop.ok("encode odd.obj --quiet").1, "");
+}
+
+#[test]
+fn nothing_is_dropped_if_nobody_wants_that() {
+    let workshop = Workshop::new();
+    let model = "v 0.1 -0 0\nv 1 1e-310 0\nv 1 1 0\nv 0 1 0\nv 9 9 9\nf 3 4 2\nf 1 1 2\nf 2 3 1\nf 1 2 3\n";
+    fs::write(workshop.path("odd.obj"), model).unwrap();
+    let wanted = lwc::io::read(workshop.path("odd.obj")).unwrap().mesh;
+    let flags = "--lossless --keep-order --keep-isolated --keep-degenerate --verify";
+    let (_, stderr) = workshop.ok(&format!("encode odd.obj {flags} -q 10"));
+    assert!(!stderr.contains("dropped"), "{stderr}");
+    for file in ["odd.ply", "odd.decoded.obj"] {
+        workshop.ok(&format!("decode odd.lwc -o {file}"));
+        let found = lwc::io::read(workshop.path(file)).unwrap().mesh;
+        assert_eq!(found, wanted, "{file}");
+        let signs =
+            |mesh: &lwc::TriMesh| mesh.positions().iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(signs(&found), signs(&wanted), "{file}");
+    }
+    let info = workshop.json("info odd.lwc --json");
+    let kinds: Vec<&str> =
+        info["trailing"].as_array().unwrap().iter().map(|chunk| chunk["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["loose", "exact", "order"]);
+    assert_eq!(info["total_bytes"], fs::metadata(workshop.path("odd.lwc")).unwrap().len());
+    // Which grid is best is found out if nobody says it.
+    workshop.ok(&format!("encode odd.obj {flags} -o small.lwc"));
+    assert!(
+        ["12", "15", "18"]
+            .contains(&workshop.json("info small.lwc --json")["precision"].to_string().as_str())
+    );
 }
 
 #[test]

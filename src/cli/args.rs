@@ -66,11 +66,13 @@ pub struct Encode {
     pub terrain: Terrain,
     #[command(flatten)]
     pub scale: Scale,
-    /// Bits per coordinate, 1 to 30.
+    /// Bits per coordinate, 1 to 30 [default: 12].
+    ///
+    /// With `--lossless` the default is 12, 15 or 18, whichever makes the smallest file; that takes three times
+    /// as long.
     #[arg(short, long, value_name = "BITS", allow_negative_numbers = true)]
-    #[arg(default_value_t = EncodeOptions::default().quantization)]
     #[arg(value_parser = value_parser!(u32).range(1..=30))]
-    pub quantization: u32,
+    pub quantization: Option<u32>,
     /// Levels above the base mesh, 0 to 128, or `auto`: until the base mesh is small.
     #[arg(long, value_name = "N", default_value = "auto", allow_negative_numbers = true)]
     #[arg(value_parser = levels)]

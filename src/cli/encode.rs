@@ -20,7 +20,7 @@ impl Encode {
         options.descriptor = self.scale.descriptor;
         options.window = self.scale.window.window();
         options.growth = self.growth;
-        options.quantization = self.quantization;
+        options.quantization = self.quantization.unwrap_or(options.quantization);
         options.levels = self.levels.0;
         options.partition = self.partition;
         options.optimize = self.optimize;
@@ -61,15 +61,14 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
 
     let name = args.input.display().to_string();
     let start = Instant::now();
-    let encoded = encode(&file, args, ui).with_context(|| name.clone())?;
+    let (encoded, options) = encode(&file, args, ui).with_context(|| name.clone())?;
     let encode_seconds = start.elapsed().as_secs_f64();
     warn_about(&name, &encoded, ui);
 
     if args.verify {
         let start = Instant::now();
         let _spinner = ui.spinner("verifying");
-        verify::verify(&file.mesh, &file.attributes, &args.options(), &encoded)
-            .with_context(|| name.clone())?;
+        verify::verify(&file.mesh, &file.attributes, &options, &encoded).with_context(|| name.clone())?;
         ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
     }
     destination.write(|out| out.write_all(&encoded.bytes))?;
@@ -78,10 +77,35 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     report.print(ui)
 }
 
-fn encode(file: &MeshFile, args: &Encode, ui: &Ui) -> Result<Encoded, lwc::EncodeError> {
+/// Grids that are tried if all floats are kept and nobody says how fine it should be: coordinates may lie on
+/// one that the file does not tell.
+const LOSSLESS_BITS: [u32; 3] = [12, 15, 18];
+
+/// The smallest stream, and its options.
+fn encode(file: &MeshFile, args: &Encode, ui: &Ui) -> Result<(Encoded, EncodeOptions), lwc::EncodeError> {
     let bar = ui.bar("encoding");
     let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
-    lwc::encode_with_attributes(&file.mesh, &file.attributes, &args.options(), &progress)
+    let encode = |options: EncodeOptions| {
+        let encoded = lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress)?;
+        Ok((encoded, options))
+    };
+    let options = args.options();
+    if !args.lossless || args.quantization.is_some() {
+        return encode(options);
+    }
+    let with = |bits: u32| {
+        let mut options = options.clone();
+        options.quantization = bits;
+        encode(options)
+    };
+    let mut best = with(LOSSLESS_BITS[0])?;
+    for bits in &LOSSLESS_BITS[1..] {
+        let other = with(*bits)?;
+        if other.0.bytes.len() < best.0.bytes.len() {
+            best = other;
+        }
+    }
+    Ok(best)
 }
 
 /// Takes the attributes out of a file; returns their names.
@@ -169,7 +193,11 @@ impl Report<'_> {
             out,
             "{}: {}, {}, {} on the base mesh, {} bits",
             self.destination.name(),
-            counted(finest.map_or(0, |p| p.vertices as usize), "vertex", "vertices"),
+            counted(
+                finest.map_or(0, |p| p.vertices as usize - self.encoded.repair.repeated_vertices),
+                "vertex",
+                "vertices"
+            ),
             counted(finest.map_or(0, |p| p.faces as usize), "face", "faces"),
             counted(info.finest_level() as usize, "level", "levels"),
             info.precision(),

@@ -50,10 +50,10 @@ fn list(counts: &[usize]) -> String {
 #[derive(Clone, Debug)]
 pub struct Edition {
     level: usize,
-    /// Cut where it is not manifold.
-    coarse: TriMesh,
+    /// The level, cut where it is not manifold.
+    cut: TriMesh,
     /// The same joined, and the joined vertex of each vertex of the finest mesh.
-    whole: TriMesh,
+    coarse: TriMesh,
     joined: Vec<u32>,
     /// From the coarse mesh as decoded to the positions its vertices have in the finest mesh, in the
     /// frames of the vertices.
@@ -67,21 +67,21 @@ impl Edition {
     /// # Errors
     /// If the stream is damaged, incomplete or beyond `limits`, or no level has as many vertices.
     pub fn new(bytes: &[u8], num_vertices: usize, limits: Limits) -> Result<Self, EditError> {
-        let StreamTower { tower, coarse, fine, joined } = Tower::of_stream(bytes, num_vertices, limits)?;
+        let StreamTower { tower, coarse: cut, fine, joined } = Tower::of_stream(bytes, num_vertices, limits)?;
         let finest_level = crate::StreamInfo::read(bytes)?.map_or(0, |info| info.finest_level() as usize);
         let level = finest_level - tower.num_levels();
         let (low, high) = fine.bounding_box().ok_or(EditError::Incomplete)?;
         let unit = unit_near((0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max));
-        let (positions, places) = (points(&fine, unit), points(&coarse, unit));
-        let frames = Frames::new(&coarse, &places);
+        let (positions, places) = (points(&fine, unit), points(&cut, unit));
+        let frames = Frames::new(&cut, &places);
         let offsets = positions.iter().zip(places).map(|(&fine, coarse)| fine - coarse);
         let refinements = offsets.enumerate().map(|(v, d)| frames.to_local(v, d)).collect();
         let mut decomposition = Decomposition::of_tower(tower, positions, Prediction::default(), false);
         decomposition.source = (0..fine.num_vertices() as u32).collect();
         decomposition.input = fine;
         decomposition.unit = unit;
-        let whole = join(&coarse, &joined);
-        Ok(Self { level, coarse, whole, joined, refinements, decomposition })
+        let coarse = join(&cut, &joined);
+        Ok(Self { level, cut, coarse, joined, refinements, decomposition })
     }
 
     /// The level that may be changed.
@@ -91,7 +91,7 @@ impl Edition {
 
     /// The mesh to change: what a decoder of that level gives.
     pub fn coarse(&self) -> &TriMesh {
-        &self.whole
+        &self.coarse
     }
 
     /// Puts the details back on `changed`, the coarse mesh with vertices moved: each detail keeps its
@@ -102,21 +102,21 @@ impl Edition {
     pub fn apply(mut self, changed: &TriMesh) -> Result<TriMesh, EditError> {
         self.check(changed)?;
         let positions = changed.positions();
-        let cut = self.joined[..self.coarse.num_vertices()].iter().map(|&v| positions[v as usize]).collect();
-        let changed = TriMesh::from_valid_parts(cut, self.coarse.triangles().to_vec());
+        let cut = self.joined[..self.cut.num_vertices()].iter().map(|&v| positions[v as usize]).collect();
+        let changed = TriMesh::from_valid_parts(cut, self.cut.triangles().to_vec());
         let places = points(&changed, self.decomposition.unit);
-        let frames = Frames::new(&self.coarse, &places);
+        let frames = Frames::new(&self.cut, &places);
         let refined = places.iter().enumerate().map(|(v, &p)| p + frames.to_model(v, self.refinements[v]));
         self.decomposition.base = refined.collect();
         Ok(join(&self.decomposition.reconstruct(), &self.joined))
     }
 
     fn check(&self, changed: &TriMesh) -> Result<(), EditError> {
-        if changed.num_vertices() != self.whole.num_vertices() {
-            let levels = vec![self.whole.num_vertices()];
+        if changed.num_vertices() != self.coarse.num_vertices() {
+            let levels = vec![self.coarse.num_vertices()];
             return Err(EditError::Vertices { found: changed.num_vertices(), levels });
         }
-        let (ours, theirs) = (sorted(&self.whole), sorted(changed));
+        let (ours, theirs) = (sorted(&self.coarse), sorted(changed));
         let differing = ours.iter().filter(|t| theirs.binary_search(t).is_err()).count();
         if differing > 0 || ours.len() != theirs.len() {
             let (expected, found) = (ours.len(), theirs.len());
