@@ -10,14 +10,16 @@ for target in decode split_independent round_trip range_coder read_obj read_ply 
     mkdir -p "corpus/$target"
 done
 
-for stream in ../format/golden/*.lwc; do
-    name=$(basename "$stream" .lwc)
+for stream in ../format/golden/*.lwc ../format/golden/fast/*.lwc; do
+    name=$(basename "$(dirname "$stream")")-$(basename "$stream" .lwc)
     # First byte: 0 takes the bytes as they are, 1 repairs lengths and checksums.
     { printf '\000'; cat "$stream"; } > "corpus/decode/$name-as-is"
     { printf '\001'; cat "$stream"; } > "corpus/decode/$name-reframed"
     # 2 makes up the frames: the payloads are whatever follows.
-    { printf '\002\013\007\004\004\000\003\002\000\000\000\003\001\040\040\020\040'; cat "$stream"; } \
+    { printf '\002\013\007\000\004\004\000\003\002\000\000\000\003\001\040\040\020\040'; cat "$stream"; } \
         > "corpus/decode/$name-made-up"
+    { printf '\002\013\007\001\004\004\000\003\002\000\000\000\003\001\040\040\020\040'; cat "$stream"; } \
+        > "corpus/decode/$name-made-up-fast"
     { printf '\001\002\003\004\005\006\007\010\001'; cat "$stream"; } > "corpus/split_independent/$name"
     cp "$stream" "corpus/round_trip/$name"
     cp "$stream" "corpus/range_coder/$name"

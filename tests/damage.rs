@@ -7,18 +7,27 @@ mod common;
 use common::chunks::{self, Chunk, Row};
 use common::valid::assert_valid;
 use common::*;
-use lwc::{DecodeError, Decoder, EncodeOptions, Limits, Partition, PassKind, Step, StreamInfo, encode};
+use lwc::{
+    DecodeError, Decoder, EncodeOptions, Limits, Partition, PassKind, Profile, Step, StreamInfo, encode,
+};
 
 /// Streams of a few hundred bytes with every kind of pass.
 fn streams() -> Vec<(&'static str, Vec<u8>)> {
     let mut cases = Vec::new();
-    for (name, mesh, partition, quantization) in [
-        ("torus", noisy(torus(9, 5), 1, 0.02), Partition::Balanced, 9),
-        ("grid", noisy(grid(7, 6, |x, y| 0.2 * x * y), 2, 0.05), Partition::Algorithm1, 8),
-        ("strip", noisy(strip(34), 3, 0.02), Partition::Balanced, 7),
+    let torus = noisy(torus(9, 5), 1, 0.02);
+    for (name, mesh, partition, quantization, profile) in [
+        ("torus", torus.clone(), Partition::Balanced, 9, Profile::Small),
+        ("grid", noisy(grid(7, 6, |x, y| 0.2 * x * y), 2, 0.05), Partition::Algorithm1, 8, Profile::Small),
+        ("strip", noisy(strip(34), 3, 0.02), Partition::Balanced, 7, Profile::Small),
+        ("fast torus", torus, Partition::Balanced, 9, Profile::Fast),
+        ("fast strip", noisy(strip(34), 3, 0.02), Partition::Algorithm1, 7, Profile::Fast),
     ] {
+        if !profile.is_supported() {
+            continue;
+        }
         let mut options = EncodeOptions::default();
         options.partition = partition;
+        options.profile = profile;
         options.quantization = quantization;
         options.steps_per_edge = Some(5.0);
         options.levels = Some(4);

@@ -55,9 +55,9 @@ impl<'a> BitReader<'a> {
     }
 
     /// True if nothing but the zeros that fill the last byte is left.
-    pub(crate) fn is_at_end(mut self) -> bool {
-        let is_last_byte = self.next.div_ceil(8) == self.bytes.len();
-        is_last_byte && (self.next..8 * self.bytes.len()).all(|_| self.bit() == Some(false))
+    pub(crate) fn is_at_end(&self) -> bool {
+        let is_zero = |i: usize| self.bytes[i / 8] >> (7 - i % 8) & 1 == 0;
+        self.next.div_ceil(8) == self.bytes.len() && (self.next..8 * self.bytes.len()).all(is_zero)
     }
 }
 

@@ -44,7 +44,6 @@ pub(crate) fn code_vertex<B: BitCoder>(
     let mut normal = Lanes::ZERO;
     let mut rough = [0; 2];
     let mut before = point(star.ring[degree - 1]);
-    let mut edge = first + degree - 1;
     let is_open = star.outer.len() < degree;
     for (i, &v) in star.ring.iter().enumerate() {
         let p = point(v);
@@ -53,12 +52,11 @@ pub(crate) fn code_vertex<B: BitCoder>(
         rough = [rough[0] + i32::from(along), rough[1] + i32::from(across)];
         normal += before.cross(p);
         // Across the edge from the vertex before to this one; the first of an open ring is none.
-        let tip = tips[edge % tips.len()];
+        let tip = tips[(first + degree - 1 + i) % tips.len()];
         if tip != NO_CORNER && !(is_open && i == 0) {
             over.0 += before + p - point(tip);
             over.1 += 1.0;
         }
-        edge += 1;
         before = p;
     }
     let mean = sum * share;

@@ -84,7 +84,8 @@ pub fn split(stream: &[u8]) -> Vec<Chunk> {
     let mut sizes = Vec::new().into_iter();
     while let Some((&kind, mut after)) = rest.split_first() {
         let is_pass = Chunk::new(kind, &[]).is_pass();
-        let length = if is_pass { sizes.next().unwrap() } else { take_varint(&mut after) };
+        let length =
+            if is_pass { sizes.next().expect("the table comes first") } else { take_varint(&mut after) };
         let chunk = Chunk::new(kind, &after[..length as usize]);
         if kind == b'L' {
             let rows = read_table(&chunk.payload);
@@ -156,7 +157,6 @@ impl Bits {
 
 /// Goes through a table; without rows it reads them.
 fn table(bits: &mut Bits, wanted: &[Row]) -> Vec<Row> {
-    let read = bits.is_reading;
     let count = bits.number(4, (wanted.len() as u64).saturating_sub(1)) as usize;
     let mut rows: Vec<Row> = Vec::new();
     let zeros = Row { head: vec![0; 3], size: 0 };
@@ -165,7 +165,7 @@ fn table(bits: &mut Bits, wanted: &[Row]) -> Vec<Row> {
     let mut there = 0_u64;
     let of = |(a, b): (u64, u64), n: u64| n * a / b.max(1);
     for pass in 0..=count {
-        let row = if read { &zeros } else { &wanted[pass] };
+        let row = wanted.get(pass).unwrap_or(&zeros);
         let head = &row.head;
         if pass == 0 {
             let precision = bits.number(2, head[0].into()) as u32;

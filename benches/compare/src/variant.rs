@@ -1,15 +1,16 @@
 //! Ways to encode that are compared.
 
 use lwc::descriptors::Descriptor;
-use lwc::{EncodeOptions, Optimize, Partition};
+use lwc::{EncodeOptions, Optimize, Partition, Profile};
 use std::fmt;
 use std::str::FromStr;
 
-/// An aim or Algorithm 1, and a descriptor if not the usual one.
+/// An aim, the profile fast with the usual aim, or Algorithm 1, and a descriptor if not the usual one.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
     /// `None` is Algorithm 1.
     aim: Option<Optimize>,
+    profile: Profile,
     descriptor: Option<Descriptor>,
 }
 
@@ -17,6 +18,7 @@ impl Variant {
     pub fn options(self, bits: u32) -> EncodeOptions {
         let mut options = EncodeOptions::default();
         options.quantization = bits;
+        options.profile = self.profile;
         options.descriptor = self.descriptor.unwrap_or_default();
         match self.aim {
             Some(aim) => options.optimize = aim,
@@ -28,7 +30,8 @@ impl Variant {
 
 impl fmt::Display for Variant {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.aim.map_or(Partition::Algorithm1.name(), Optimize::name))?;
+        let name = self.aim.map_or(Partition::Algorithm1.name(), Optimize::name);
+        f.write_str(if self.profile == Profile::Fast { self.profile.name() } else { name })?;
         self.descriptor.map_or(Ok(()), |descriptor| write!(f, ":{}", descriptor.name()))
     }
 }
@@ -44,11 +47,14 @@ impl FromStr for Variant {
             None => (text, None),
         };
         if aim == Partition::Algorithm1.name() {
-            return Ok(Self { aim: None, descriptor });
+            return Ok(Self { aim: None, profile: Profile::default(), descriptor });
+        }
+        if aim == Profile::Fast.name() {
+            return Ok(Self { aim: Some(Optimize::default()), profile: Profile::Fast, descriptor });
         }
         let found = Optimize::ALL.into_iter().find(|known| known.name() == aim);
         found
-            .map(|aim| Self { aim: Some(aim), descriptor })
-            .ok_or_else(|| format!("`{aim}` is neither size, balanced, prefix nor algorithm1"))
+            .map(|aim| Self { aim: Some(aim), profile: Profile::default(), descriptor })
+            .ok_or_else(|| format!("`{aim}` is neither size, balanced, prefix, fast nor algorithm1"))
     }
 }
