@@ -58,6 +58,7 @@ impl Announced {
         payload
     }
 
+    #[cfg(feature = "encoder")]
     pub(crate) fn is_empty(&self) -> bool {
         self.glue.is_empty() && self.trailing.is_empty()
     }
