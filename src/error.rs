@@ -77,6 +77,9 @@ pub enum EncodeError {
         /// What is wrong with it.
         what: String,
     },
+    /// The descriptor cannot see the attributes.
+    #[error(transparent)]
+    Features(#[from] crate::descriptors::FeaturesError),
     /// The coordinates span more than double precision can hold.
     #[error("the bounding box of the mesh overflows double precision")]
     BoundingBox,

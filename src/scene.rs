@@ -1,9 +1,10 @@
-//! Chunk `n` (`format/SPEC.md`, section 4.4): the meshes of a scene and where they stand.
+//! Chunks `n` and `m` (`format/SPEC.md`, sections 4.6 and 7.12): the meshes of a scene and where they stand; how
+//! materials look.
 
 use crate::bitstream::bytes::Reader;
 #[cfg(any(feature = "encoder", test))]
 use crate::bitstream::bytes::write_varint;
-use crate::mesh::{IDENTITY, Instance, SceneTable};
+use crate::mesh::{GltfMaterials, IDENTITY, Instance, SceneTable};
 
 const UNMOVED: u8 = 0;
 const MOVED: u8 = 1;
@@ -70,6 +71,33 @@ pub(crate) fn write(table: &SceneTable) -> Vec<u8> {
     bytes
 }
 
+/// `None` if the payload breaks a rule.
+pub(crate) fn read_materials(payload: &[u8]) -> Option<GltfMaterials> {
+    let mut reader = Reader::new(payload);
+    let mut materials = GltfMaterials::default();
+    let length = reader.varint()? as usize;
+    materials.json = std::str::from_utf8(reader.take(length)?).ok()?.to_owned();
+    let num_images = reader.varint()?;
+    for _ in 0..num_images {
+        let length = reader.varint()? as usize;
+        materials.images.push(reader.take(length)?.to_vec());
+    }
+    reader.is_empty().then_some(materials)
+}
+
+#[cfg(any(feature = "encoder", test))]
+pub(crate) fn write_materials(materials: &GltfMaterials) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_varint(&mut bytes, materials.json.len() as u32);
+    bytes.extend(materials.json.as_bytes());
+    write_varint(&mut bytes, materials.images.len() as u32);
+    for image in &materials.images {
+        write_varint(&mut bytes, image.len() as u32);
+        bytes.extend(image);
+    }
+    bytes
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,5 +134,16 @@ mod tests {
         assert_eq!(read(&[1, 0, 1, 0, 1, 0xff, 0]), None, "no text");
         let infinite = [&[1, 0, 1, 0, 0, 1][..], &f32::INFINITY.to_le_bytes(), &[0; 8]].concat();
         assert_eq!(read(&infinite), None, "not finite");
+    }
+
+    #[test]
+    fn materials_come_back_and_cut_ones_are_refused() {
+        let mut materials = GltfMaterials::default();
+        materials.json = "{\"materials\":[]}".to_owned();
+        materials.images = vec![vec![1, 2, 3], Vec::new()];
+        let bytes = write_materials(&materials);
+        assert_eq!(read_materials(&bytes), Some(materials));
+        assert!((0..bytes.len()).all(|end| read_materials(&bytes[..end]).is_none()));
+        assert_eq!(read_materials(&[1, 0xff, 0]), None, "no text");
     }
 }

@@ -42,6 +42,9 @@ pub(crate) mod kind {
     pub(crate) const GLUE: u8 = b'g';
     /// Isolated vertices and degenerate faces.
     pub(crate) const LOOSE: u8 = b'i';
+    /// The meshes of a scene, and how materials look.
+    pub(crate) const SCENE: u8 = b'n';
+    pub(crate) const MATERIALS: u8 = b'm';
     /// Coordinates bit for bit.
     pub(crate) const EXACT: u8 = b'x';
     /// Order of the file.
@@ -49,7 +52,7 @@ pub(crate) mod kind {
 
     /// True if a known kind has its place in front of a pass or directly behind one.
     pub(crate) fn is_known_elsewhere(kind: u8) -> bool {
-        matches!(kind, PROVENANCE | DECLARATIONS | ATTRIBUTES | ANNOUNCED | GLUE)
+        matches!(kind, PROVENANCE | SCENE | DECLARATIONS | ATTRIBUTES | ANNOUNCED | GLUE)
     }
 
     /// True if the chunk is a pass: the table of passes knows its length.

@@ -147,8 +147,8 @@ pub struct Encode {
     /// Keep the order of vertices and faces, and the first corner of each face; `lwc info` shows the price.
     #[arg(long)]
     pub keep_order: bool,
-    /// Join the meshes of a scene (.glb .gltf) into one. They are joined without it too, with a note: streams
-    /// of several meshes are not there yet.
+    /// Join the meshes of a scene (.glb .gltf) into one, each in its place. Without it each mesh is in the stream once,
+    /// in its own coordinates, with all the places it has.
     #[arg(long)]
     pub merge: bool,
     /// Decode the stream and compare it with the mesh before it is written.

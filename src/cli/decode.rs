@@ -7,7 +7,7 @@ use super::output::{Destination, with_ending};
 use super::quantity::counted;
 use super::ui::Ui;
 use anyhow::Context;
-use lwc::io::{Format, WriteError, WriteReport};
+use lwc::io::{Format, Scene, WriteError, WriteReport};
 use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
 use std::io::{self, Write};
@@ -107,6 +107,18 @@ fn write(
     attributes: &Attributes,
 ) -> anyhow::Result<WriteReport> {
     let mut report = WriteReport::default();
+    if let Some(scene) = Scene::unpack(mesh, attributes) {
+        match destination {
+            Destination::File(path) => {
+                report = lwc::io::write_scene(path, &scene).with_context(|| destination.name())?;
+            }
+            Destination::Stdout => destination.write(|out| {
+                report = lwc::io::write_scene_to(out, &scene, format)?;
+                Ok::<(), WriteError>(())
+            })?,
+        }
+        return Ok(report);
+    }
     match destination {
         Destination::File(path) => {
             let written = lwc::io::write_with_attributes(path, mesh, attributes);

@@ -1,7 +1,7 @@
 //! `lwc encode`: a mesh file becomes a stream.
 
 use super::args::Encode;
-use super::input::{read_mesh, read_terrain};
+use super::input::{read_for_stream, read_terrain};
 use super::output::{Destination, print_json, with_ending, without_mesh_ending};
 use super::quantity::counted;
 use super::ui::Ui;
@@ -19,6 +19,7 @@ impl Encode {
         let mut options = EncodeOptions::default();
         options.descriptor = self.scale.descriptor;
         options.window = self.scale.window.window();
+        options.descriptor_attributes.clone_from(&self.scale.descriptor_attributes);
         options.growth = self.growth;
         options.quantization = self.quantization.unwrap_or(options.quantization);
         options.levels = self.levels.0;
@@ -51,12 +52,9 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let start = Instant::now();
     let mut file = match args.terrain.options() {
         Some(options) => read_terrain(&args.input, &options, ui)?,
-        None => read_mesh(&args.input, ui)?,
+        None => read_for_stream(&args.input, args.merge, ui)?,
     };
     let left_out = if args.no_attributes { drop_attributes(&mut file) } else { Vec::new() };
-    if !args.merge {
-        note_if_merged(&args.input.display().to_string(), &file, ui);
-    }
     let read_seconds = start.elapsed().as_secs_f64();
 
     let name = args.input.display().to_string();
@@ -113,14 +111,6 @@ fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
     let attributes = std::mem::take(&mut file.attributes);
     let names = attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
     names.chain(attributes.material_libraries.first().map(|_| "mtllib".to_owned())).collect()
-}
-
-fn note_if_merged(name: &str, file: &MeshFile, ui: &Ui) {
-    let instances = file.attributes.list.iter().find(|attribute| attribute.name == "node");
-    if let Some(instances) = instances {
-        let what = format!("{} joined into one mesh", counted(instances.num_rows(), "instance", "instances"));
-        ui.note(name, &what);
-    }
 }
 
 fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {

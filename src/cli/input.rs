@@ -4,7 +4,8 @@ use super::exit::Failure;
 use super::quantity::counted;
 use super::ui::{Bar, Ui};
 use anyhow::Context;
-use lwc::io::{Format, MeshFile, ReadError, TerrainOptions};
+use lwc::io::{Format, MeshFile, ReadError, Scene, TerrainOptions};
+use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
 use std::fs::File;
 use std::io::{self, IsTerminal, Read};
@@ -60,6 +61,26 @@ fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
     }
 }
 
+/// As [`read_mesh`], but the meshes of a scene keep to themselves unless they are to be merged: what a stream
+/// holds.
+pub fn read_for_stream(path: &Path, merge: bool, ui: &Ui) -> anyhow::Result<MeshFile> {
+    let read = || {
+        let scene = lwc::io::read_scene(path)?;
+        if merge || scene.is_single() { scene.merge() } else { scene.pack() }
+    };
+    read_with(path, read, ui)
+}
+
+/// A mesh that was decoded with all its parts in their places, if it is a scene.
+pub fn in_place(mesh: TriMesh, attributes: Attributes) -> Result<MeshFile, ReadError> {
+    if let Some(scene) = Scene::unpack(&mesh, &attributes) {
+        return scene.merge();
+    }
+    let mut file = MeshFile::default();
+    (file.mesh, file.attributes) = (mesh, attributes);
+    Ok(file)
+}
+
 /// Reads a mesh file, or decodes the finest mesh of a stream if that is what the ending says.
 pub fn read_mesh_or_stream(path: &Path, limits: lwc::Limits, ui: &Ui) -> anyhow::Result<TriMesh> {
     let is_stream = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("lwc"));
@@ -72,9 +93,10 @@ pub fn read_mesh_or_stream(path: &Path, limits: lwc::Limits, ui: &Ui) -> anyhow:
     if let Some(error) = error {
         return Err(error).with_context(|| source.name());
     }
-    let mesh = decoder.preview().ok_or(DecodeError::NoMesh).with_context(|| source.name())?;
+    let (mesh, attributes) =
+        decoder.preview_with_attributes().ok_or(DecodeError::NoMesh).with_context(|| source.name())?;
     note_if_incomplete(&decoder, None, &source.name(), ui);
-    Ok(mesh)
+    Ok(in_place(mesh, attributes).with_context(|| source.name())?.mesh)
 }
 
 /// Where a stream comes from.

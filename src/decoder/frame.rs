@@ -5,7 +5,7 @@ use crate::bitstream::chunk::{self, Frame, NextPass};
 use crate::bitstream::header::{Action, Grid, Pass, Provenance};
 use crate::bitstream::pass_table::{self, BadTable};
 use crate::limits::Limits;
-use crate::mesh::{Domain, ScalarType, Semantic};
+use crate::mesh::{Domain, ScalarType, SceneTable, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
 use crate::{DecodeError, Profile};
 
@@ -18,6 +18,7 @@ pub struct StreamInfo {
     pub(super) passes: Vec<PassInfo>,
     pub(super) attributes: Vec<AttributeInfo>,
     pub(super) trailing: Vec<TrailingInfo>,
+    pub(super) scene: Option<SceneTable>,
 }
 
 /// What a stream says of one of its attributes.
@@ -64,6 +65,8 @@ pub enum TrailingKind {
     Exact,
     /// The order of vertices and triangles.
     Order,
+    /// How materials look.
+    Materials,
     /// Something that a newer encoder wrote.
     Unknown,
 }
@@ -74,6 +77,7 @@ impl TrailingKind {
             chunk::kind::LOOSE => Self::Loose,
             chunk::kind::EXACT => Self::Exact,
             chunk::kind::ORDER => Self::Order,
+            chunk::kind::MATERIALS => Self::Materials,
             _ => Self::Unknown,
         }
     }
@@ -84,6 +88,7 @@ impl TrailingKind {
             Self::Loose => "loose",
             Self::Exact => "exact",
             Self::Order => "order",
+            Self::Materials => "materials",
             Self::Unknown => "unknown",
         }
     }
@@ -196,6 +201,11 @@ impl StreamInfo {
     /// All passes in order.
     pub fn passes(&self) -> &[PassInfo] {
         &self.passes
+    }
+
+    /// The scene whose meshes these are, if it is one: see [`Attributes::scene`](crate::mesh::Attributes::scene).
+    pub fn scene(&self) -> Option<&SceneTable> {
+        self.scene.as_ref()
     }
 
     /// What follows the last pass, in order.

@@ -10,12 +10,12 @@ use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::header::{Header, Provenance};
 use crate::limits::Limits;
-use crate::mesh::Attributes;
+use crate::mesh::{Attributes, GltfMaterials, SceneTable};
 use crate::passes::GridMesh;
 use crate::passes::attribute::Declarations;
 use crate::passes::patch::Patches;
 use crate::passes::work::Work;
-use crate::{DecodeError, Profile, TriMesh};
+use crate::{DecodeError, Profile, TriMesh, scene};
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -68,6 +68,8 @@ pub struct Decoder {
     header: Option<Header>,
     provenance: Option<Provenance>,
     announced: Option<Announced>,
+    scene: Option<SceneTable>,
+    materials: Option<GltfMaterials>,
     profile: Profile,
     info: Option<StreamInfo>,
     /// Passes done.
@@ -101,6 +103,8 @@ impl Decoder {
             header: None,
             provenance: None,
             announced: None,
+            scene: None,
+            materials: None,
             profile: Profile::default(),
             info: None,
             done: 0,
@@ -263,7 +267,15 @@ impl Decoder {
                     let trailing = trailing.map_err(|e| malformed(e.0))?;
                     let attributes = declared.list.iter().map(AttributeInfo::of).collect();
                     let (grid, provenance, profile) = (*grid, self.provenance, self.profile);
-                    self.info = Some(StreamInfo { grid, provenance, profile, passes, attributes, trailing });
+                    self.info = Some(StreamInfo {
+                        grid,
+                        provenance,
+                        profile,
+                        passes,
+                        attributes,
+                        trailing,
+                        scene: self.scene.take(),
+                    });
                 }
                 (kind::DECLARATIONS, _) if self.attributes.is_none() => {
                     let needed = 2 * payload.len() as u64 + self.frames.buffered() as u64;
@@ -274,6 +286,15 @@ impl Decoder {
                 }
                 (kind::DECLARATIONS, _) => return Err(out_of_order(&chunk)),
                 (kind::PROVENANCE, _) => self.provenance = Provenance::read(payload),
+                (kind::SCENE, _) if self.scene.is_none() => {
+                    self.scene = Some(scene::read(payload).ok_or(malformed("the scene"))?);
+                }
+                (kind::MATERIALS, _) if self.materials.is_none() => {
+                    let needed = payload.len() as u64 + self.frames.buffered() as u64;
+                    Limits::check("memory", needed, self.limits.max_memory)?;
+                    self.materials = Some(scene::read_materials(payload).ok_or(malformed("materials"))?);
+                }
+                (kind::SCENE | kind::MATERIALS, _) => return Err(out_of_order(&chunk)),
                 (kind::ANNOUNCED, _) if self.announced.is_none() => {
                     self.announced = Some(Announced::read(payload).ok_or(malformed("the announced chunks"))?);
                 }
@@ -387,6 +408,12 @@ impl Decoder {
             kind::LOOSE => assemble::read_loose(extras, mesh, grid, payload, limits, buffered),
             kind::EXACT => assemble::read_exact(extras, mesh, grid, payload, limits, buffered),
             kind::ORDER => assemble::read_order(extras, mesh, payload, limits, buffered),
+            kind::MATERIALS => {
+                let needed = payload.len() as u64 + buffered;
+                Limits::check("memory", needed, limits.max_memory)?;
+                self.materials = Some(scene::read_materials(payload).ok_or(malformed("materials"))?);
+                Ok(())
+            }
             _ => Ok(()),
         }
         .map_err(|e| e.at(chunk.offset))?;
@@ -442,11 +469,19 @@ impl Decoder {
     /// Attributes of the surface [`Decoder::mesh`], without gaps: values that have not come yet are guessed from those around.
     /// Empty before the base mesh is complete, and of a stream without attributes. Collected anew by each call.
     pub fn attributes(&self) -> Attributes {
-        let Some(attributes) = self.attributes.as_ref().filter(|_| self.done > 0) else {
-            return Attributes::default();
-        };
         let cut = self.frames.cut_chunk(None).filter(|(kind, _)| self.awaited.front() == Some(kind));
-        attributes.attributes(&self.passes.mesh, cut.map_or(&[], |(_, payload)| payload))
+        let cut = cut.map_or(&[][..], |(_, payload)| payload);
+        let known = self.attributes.as_ref().filter(|_| self.done > 0);
+        self.with_scene(known.map(|known| known.attributes(&self.passes.mesh, cut)).unwrap_or_default())
+    }
+
+    /// Attributes with what the stream has once for all of the mesh.
+    fn with_scene(&self, mut attributes: Attributes) -> Attributes {
+        if self.done > 0 {
+            attributes.scene = self.info.as_ref().and_then(|info| info.scene.clone());
+            attributes.gltf_materials.clone_from(&self.materials);
+        }
+        attributes
     }
 
     /// Checksum of the values of all attributes that have come (`format/SPEC.md`, section 9): equal on every platform
@@ -476,7 +511,9 @@ impl Decoder {
         let cut = LevelMesh { cells, triangles, precision: pass.precision, ..complete };
         let first = complete.num_vertices();
         let attributes = match &self.attributes {
-            Some(attributes) if pass.kind == PassKind::Split => attributes.with_cut(&mesh, &patches, first),
+            Some(attributes) if pass.kind == PassKind::Split => {
+                self.with_scene(attributes.with_cut(&mesh, &patches, first))
+            }
             _ => self.attributes(),
         };
         Some(self.assemble(cut, attributes))

@@ -83,6 +83,11 @@ impl Descriptor {
         Descriptor::PcaQem,
     ];
 
+    /// Whether it is defined in any dimension, so that attributes can be coordinates (section 5.2).
+    pub fn knows_attributes(self) -> bool {
+        matches!(self, Descriptor::Pca | Descriptor::PcaQem)
+    }
+
     /// The lower-case name used on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {

@@ -3,7 +3,7 @@
 use super::options::{EncodeOptions, Progress};
 use crate::TriMesh;
 use crate::descent::{Descent, Settings};
-use crate::descriptors;
+use crate::descriptors::{self, Features};
 use crate::mesh::Surface;
 use crate::partition::Geometry;
 use crate::simplify::{LevelRecord, Seams};
@@ -39,6 +39,7 @@ pub(super) fn analyse(
     cells: &[[i32; 3]],
     glued: BitVec,
     seams: Seams,
+    features: Option<Features>,
     options: &EncodeOptions,
     max_valence: Option<u32>,
     progress: &(dyn Fn(Progress) + Sync),
@@ -53,7 +54,7 @@ pub(super) fn analyse(
     let geometry = Geometry { grid: cells, positions: &positions };
     let settings = Settings { max_valence, ..settings(options) };
     let descent = Descent::new(surface, geometry, mean_edge, settings, glued);
-    let mut descent = descent.with_seams(seams);
+    let mut descent = descent.with_seams(seams).with_features(features);
     let squared_step = steps_per_unit.powi(2);
     let mut records = Vec::new();
     let mut mean_edges = vec![descent.level().mean_edge(cells)];

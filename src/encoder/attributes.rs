@@ -6,7 +6,7 @@ use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};
 use crate::simplify::Seams;
-use crate::{EncodeError, TriMesh};
+use crate::{EncodeError, TriMesh, scene};
 use std::collections::HashMap;
 
 /// All attributes of a surface as integers.
@@ -14,6 +14,9 @@ use std::collections::HashMap;
 pub(super) struct Quantised {
     pub(super) list: Vec<QuantisedAttribute>,
     material_libraries: Vec<String>,
+    /// Payloads of the scene and the materials.
+    pub(super) scene: Option<Vec<u8>>,
+    pub(super) materials: Option<Vec<u8>>,
     /// Rows that are not finite.
     pub(super) values_dropped: usize,
 }
@@ -84,6 +87,14 @@ pub(super) fn quantise(
 ) -> Result<Quantised, EncodeError> {
     let mut quantised =
         Quantised { material_libraries: attributes.material_libraries.clone(), ..Quantised::default() };
+    if let Some(table) = &attributes.scene {
+        let payload = scene::write(table);
+        let what = || "it breaks a rule of the format".to_owned();
+        let fail = || EncodeError::Attribute { name: "scene".to_owned(), what: what() };
+        quantised.scene =
+            Some(Some(payload).filter(|payload| scene::read(payload).is_some()).ok_or_else(fail)?);
+    }
+    quantised.materials = attributes.gltf_materials.as_ref().map(scene::write_materials);
     let mut num_tracks = 0;
     for attribute in &attributes.list {
         let fail = |what: String| EncodeError::Attribute { name: attribute.name.clone(), what };

@@ -14,6 +14,7 @@ use trailing::Exact;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
+use crate::descriptors::{Features, FeaturesError};
 use crate::mesh::Attributes;
 use crate::mesh::repair::{RepairReport, cut};
 use crate::{EncodeError, StreamInfo, TriMesh};
@@ -81,6 +82,7 @@ pub fn encode_with_attributes(
     let vertices: Vec<u32> = source.iter().map(|&v| ordered.vertex_source[v as usize]).collect();
     let elements = attributes::Elements { vertices: &vertices, corners: &ordered.corner_source };
     let quantised = attributes::quantise(mesh, attributes, elements, options)?;
+    let features = features(mesh, attributes, &vertices, options)?;
     drop(vertices);
     let glued = trailing::kept(&source);
     let exact = Exact { mesh, grid: &grid, ordered: &ordered, source: &source, loose: &loose, options };
@@ -91,8 +93,16 @@ pub fn encode_with_attributes(
     for (i, max_valence) in attempts.enumerate() {
         let taken = if i == others.len() { surface.take() } else { surface.clone() }.unwrap_or_default();
         let seams = quantised.seams();
-        let hierarchy =
-            analysis::analyse(taken, &cells, glued.clone(), seams, options, max_valence, progress);
+        let hierarchy = analysis::analyse(
+            taken,
+            &cells,
+            glued.clone(),
+            seams,
+            features.clone(),
+            options,
+            max_valence,
+            progress,
+        );
         let tried = if options.steps_per_edge.is_some() { &[None] } else { options.steps_tried() };
         for &steps in tried {
             let steps = options.steps_per_edge.or(steps);
@@ -106,4 +116,22 @@ pub fn encode_with_attributes(
     // The encoder's own bytes always hold a header.
     let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(bytes.len()))?;
     Ok(Encoded { bytes, info, repair, values_dropped: quantised.values_dropped })
+}
+
+/// The attributes that the descriptor is to see at the `vertices` of the mesh.
+fn features(
+    mesh: &TriMesh,
+    attributes: &Attributes,
+    vertices: &[u32],
+    options: &EncodeOptions,
+) -> Result<Option<Features>, FeaturesError> {
+    if options.descriptor_attributes.is_empty() {
+        return Ok(None);
+    }
+    let descriptor = options.descriptor;
+    if !descriptor.knows_attributes() {
+        return Err(FeaturesError::Descriptor { descriptor });
+    }
+    let features = Features::choose(mesh, attributes, &options.descriptor_attributes)?;
+    Ok(Some(features.of_vertices(vertices)))
 }

@@ -1,7 +1,7 @@
 //! What the caller may choose, and what comes back.
 
 use crate::descent::MAX_LEVELS;
-use crate::descriptors::{Descriptor, Window};
+use crate::descriptors::{Descriptor, FeatureChoice, Window};
 use crate::mesh::repair::RepairReport;
 use crate::{EncodeError, Optimize, Partition, Profile, StreamInfo};
 
@@ -15,6 +15,8 @@ pub struct EncodeOptions {
     pub window: Window,
     /// Factor of the radius from each level to the next coarser one. Default 1.5.
     pub growth: f64,
+    /// Attributes that the descriptor sees beside positions, if it is pca or pca-qem. Default none.
+    pub descriptor_attributes: Vec<FeatureChoice>,
     /// Bits per coordinate, 1 to 30. Default 12.
     pub quantization: u32,
     /// Number of levels above the base mesh; `None` goes on until the base is small. Default `None`.
@@ -58,6 +60,7 @@ impl Default for EncodeOptions {
             descriptor: Descriptor::default(),
             window: Window::default(),
             growth: 1.5,
+            descriptor_attributes: Vec::new(),
             quantization: 12,
             levels: None,
             partition: Partition::default(),

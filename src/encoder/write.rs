@@ -27,6 +27,10 @@ use crate::simplify::LevelRecord;
 use bitvec::vec::BitVec;
 use std::collections::HashMap;
 
+/// Materials of at most this many bytes stand in front of the passes: the base mesh should not have to wait for
+/// pictures.
+const MOST_IN_FRONT: usize = 1 << 12;
+
 /// Writes the stream. `cells` are those of the full surface at full precision.
 pub(super) fn write(
     hierarchy: &Hierarchy,
@@ -51,7 +55,9 @@ pub(super) fn write(
         vertex_source: &writer.vertex_source,
         face_source: &writer.face_source,
     };
-    let trailing = exact.trailing(&surface, writer.roots);
+    let mut trailing = exact.trailing(&surface, writer.roots);
+    let is_large = |payload: &&Vec<u8>| payload.len() > MOST_IN_FRONT;
+    trailing.extend(attributes.materials.iter().filter(is_large).map(|m| (kind::MATERIALS, m.clone())));
     let values = writer.attributes.into_payloads();
     assemble(exact, hierarchy, attributes, &writer.passes, &values, &trailing)
 }
@@ -87,6 +93,12 @@ fn assemble(
     }
     if !attributes.is_empty() {
         chunk::write(&mut bytes, kind::DECLARATIONS, &attributes.declare(values).write());
+    }
+    if let Some(scene) = &attributes.scene {
+        chunk::write(&mut bytes, kind::SCENE, scene);
+    }
+    if let Some(materials) = attributes.materials.as_ref().filter(|m| m.len() <= MOST_IN_FRONT) {
+        chunk::write(&mut bytes, kind::MATERIALS, materials);
     }
     let glue = passes.iter().zip(0..).filter_map(|(pass, i)| Some((i, pass.glue.as_ref()?.len() as u32)));
     let announced = Announced {

@@ -4,7 +4,7 @@ pub mod args;
 mod montage;
 
 use super::exit::Failure;
-use super::input::{DecodedStream, StreamSource, note_if_incomplete, read_mesh};
+use super::input::{DecodedStream, StreamSource, in_place, note_if_incomplete, read_mesh};
 use super::output::Destination;
 use super::ui::Ui;
 use anyhow::Context;
@@ -79,10 +79,9 @@ fn read(args: &Render, ui: &Ui) -> anyhow::Result<MeshFile> {
         return Err(error).with_context(|| source.name());
     }
     note_if_incomplete(&decoder, args.bytes, &source.name(), ui);
-    let mesh = decoder.mesh().ok_or(DecodeError::NoMesh).with_context(|| source.name())?;
-    let mut file = MeshFile::default();
-    file.mesh = mesh.to_tri_mesh();
-    Ok(file)
+    let decoded = decoder.preview_with_attributes().ok_or(DecodeError::NoMesh);
+    let (mesh, attributes) = decoded.with_context(|| source.name())?;
+    in_place(mesh, attributes).with_context(|| source.name())
 }
 
 fn camera(mesh: &TriMesh, picture: &Picture) -> Camera {

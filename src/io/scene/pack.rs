@@ -16,7 +16,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::merge`].
-    pub fn pack(&self) -> Result<(MeshFile, SceneTable), ReadError> {
+    pub fn pack(&self) -> Result<MeshFile, ReadError> {
         let exponents: Vec<i8> = (0..self.meshes.len()).map(|mesh| self.exponent(mesh)).collect();
         let mut merger = Merger::new(self);
         for (mesh, (file, &exponent)) in self.meshes.iter().zip(&exponents).enumerate() {
@@ -27,7 +27,9 @@ impl Scene {
             let numbers = Values::U32((0..self.meshes.len() as u32).collect());
             merger.add_numbers(SCENE_MESH, numbers, (0..self.meshes.len()).map(|m| self.num_triangles(m)));
         }
-        Ok((merger.finish()?, SceneTable { exponents, instances: self.instances.clone() }))
+        let mut file = merger.finish()?;
+        file.attributes.scene = Some(SceneTable { exponents, instances: self.instances.clone() });
+        Ok(file)
     }
 
     /// The power of two closest to how much larger a mesh is in the scene than in its own coordinates.
@@ -43,9 +45,10 @@ impl Scene {
         scale.log2().round().clamp(-100.0, 100.0) as i8
     }
 
-    /// The scene that a mesh packed by [`Scene::pack`] is, at any level. Meshes that have no triangles have no
-    /// vertices either.
-    pub fn unpack(mesh: &TriMesh, attributes: &Attributes, table: &SceneTable) -> Self {
+    /// The scene that a mesh packed by [`Scene::pack`] is, at any level; `None` if it is no such mesh. Meshes that
+    /// have no triangles have no vertices either.
+    pub fn unpack(mesh: &TriMesh, attributes: &Attributes) -> Option<Self> {
+        let table = attributes.scene.as_ref()?;
         let which = attributes.list.iter().position(|attribute| is_scene_mesh(attribute));
         let number = |t: usize| {
             let attribute = &attributes.list[which?];
@@ -68,13 +71,13 @@ impl Scene {
         });
         // Instances may repeat what the stream has once, but not beyond reason.
         let num_bytes = size_of::<[f64; 6]>() * mesh.num_vertices();
-        Self {
+        Some(Self {
             meshes: meshes.collect(),
             instances: table.instances.clone(),
             gltf_materials: attributes.gltf_materials.clone(),
             report: ReadReport::default(),
             num_bytes,
-        }
+        })
     }
 }
 
@@ -174,10 +177,10 @@ mod tests {
     #[test]
     fn scenes_come_back_bit_for_bit() {
         let scene = scene();
-        let (file, table) = scene.pack().unwrap();
-        assert_eq!(table.exponents, [0, 3]);
+        let file = scene.pack().unwrap();
+        assert_eq!(file.attributes.scene.as_ref().unwrap().exponents, [0, 3]);
         assert_eq!(file.mesh.positions()[3], [40.0, 0.0, 0.0]);
-        let again = Scene::unpack(&file.mesh, &file.attributes, &table);
+        let again = Scene::unpack(&file.mesh, &file.attributes).unwrap();
         assert_eq!((&again.meshes, &again.instances), (&scene.meshes, &scene.instances));
         let zero = again.meshes[1].mesh.positions()[0][2];
         assert!(zero == 0.0 && zero.is_sign_negative());
@@ -185,10 +188,11 @@ mod tests {
 
     #[test]
     fn a_table_that_knows_fewer_meshes_is_harmless() {
-        let (file, mut table) = scene().pack().unwrap();
+        let mut file = scene().pack().unwrap();
+        let table = file.attributes.scene.as_mut().unwrap();
         table.exponents.truncate(1);
         table.instances.clear();
-        let again = Scene::unpack(&file.mesh, &file.attributes, &table);
+        let again = Scene::unpack(&file.mesh, &file.attributes).unwrap();
         assert_eq!(again.meshes, scene().meshes[..1]);
     }
 }

@@ -29,7 +29,7 @@ mod values;
 
 pub use values::{ScalarType, Values};
 
-use super::TriMesh;
+use super::{SceneTable, TriMesh};
 use std::fmt;
 use thiserror::Error;
 
@@ -275,6 +275,8 @@ pub struct Attributes {
     pub material_libraries: Vec<String>,
     /// How the materials of a glTF file look.
     pub gltf_materials: Option<GltfMaterials>,
+    /// If the mesh is several meshes of a scene, where they stand.
+    pub scene: Option<SceneTable>,
 }
 
 /// The materials of a glTF file, told apart by their names, with all that they refer to. Carried, not looked
@@ -297,7 +299,7 @@ impl Attributes {
 
     /// Whether there is nothing at all.
     pub fn is_empty(&self) -> bool {
-        self.list.is_empty() && self.material_libraries.is_empty() && self.gltf_materials.is_none()
+        *self == Self::default()
     }
 }
 
