@@ -122,6 +122,7 @@ impl Iterator for Descent<'_> {
         if !self.wants_level() {
             return None;
         }
+        let optimize = self.settings.optimize;
         let scores = self.scores();
         let record = remove_level(
             self.settings.partition,
@@ -134,17 +135,19 @@ impl Iterator for Descent<'_> {
             &self.level.vertices,
             &scores,
         );
-        if record.len() == 0 && self.seams.hold() && !is_coarse(self.level.vertices.len(), &self.shrinking) {
+        if record.len() == 0 {
+            let num_vertices = self.level.vertices.len();
+            let may_loosen = self.seams.hold() && !is_coarse(optimize, num_vertices, &self.shrinking);
+            if !may_loosen {
+                return None;
+            }
             self.seams.loosen();
             return self.next();
-        }
-        if record.len() == 0 {
-            return None;
         }
         let finer = std::mem::replace(&mut self.level, Level::collect(&self.shrinking));
         let is_little = (record.len() as f64) < LEAST_SHARE * finer.vertices.len() as f64;
         let num_vertices = self.level.vertices.len();
-        if is_little && self.seams.hold() && !is_coarse(num_vertices, &self.shrinking) {
+        if is_little && self.seams.hold() && !is_coarse(optimize, num_vertices, &self.shrinking) {
             self.seams.loosen();
         } else {
             self.is_over = is_little;
