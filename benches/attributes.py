@@ -38,7 +38,7 @@ def measure(program, path, optimize):
         parts = {a["name"]: a["bytes"] for a in json.loads(info.stdout)["attributes"]}
         theirs = None
         if has_draco():
-            bare = folder / "bare.ply"
+            bare = folder / "bare.obj"
             subprocess.run([program, "decode", folder / "bare.lwc", "-o", bare, "--quiet"], check=True)
             bits = ["-cl", "10", "-qp", "12", "-qn", "8", "-qt", "10"]
             theirs = [size(["draco_encoder", "-i", source, "-o", folder / "x.drc", *bits], folder / "x.drc")

@@ -72,7 +72,7 @@ impl<'a> Descent<'a> {
 
     /// What stays, the triangles at the anchors first, the anchor as their first edge, so that a decoder
     /// numbers its ends before all other vertices of its component. With the surface in whose slots it stands, and
-    /// the seams there.
+    /// the seams there, if there are any.
     pub(crate) fn into_base(self) -> (Level, Surface, Seams) {
         let Self { shrinking, anchors, seams, mut level, .. } = self;
         let mut place_of_slot: Vec<u32> = vec![u32::MAX; shrinking.surface.triangles.len()];
@@ -87,7 +87,8 @@ impl<'a> Descent<'a> {
             place_of_slot[level.faces[place] as usize] = place as u32;
             place_of_slot[slot as usize] = i as u32;
         }
-        (level, shrinking.surface, seams)
+        let slots = if seams.is_empty() { Surface::default() } else { shrinking.surface };
+        (level, slots, seams)
     }
 
     /// Mean squared distance of the original surface from the present level, by its quadrics.
