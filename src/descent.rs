@@ -102,7 +102,7 @@ impl<'a> Descent<'a> {
 
     /// What stays, the triangles at the anchors first, the anchor as their first edge, so that a decoder
     /// numbers its ends before all other vertices of its component. With the surface in whose slots it stands, and
-    /// the seams there.
+    /// the seams there, if there are any.
     pub(crate) fn into_base(self) -> (Level, Surface, Seams) {
         let Self { shrinking, anchors, seams, mut level, .. } = self;
         let mut place_of_slot: Vec<u32> = vec![u32::MAX; shrinking.surface.triangles.len()];
@@ -117,7 +117,8 @@ impl<'a> Descent<'a> {
             place_of_slot[level.faces[place] as usize] = place as u32;
             place_of_slot[slot as usize] = i as u32;
         }
-        (level, shrinking.surface, seams)
+        let slots = if seams.is_empty() { Surface::default() } else { shrinking.surface };
+        (level, slots, seams)
     }
 
     /// Mean squared distance of the original surface from the present level, by its quadrics.
@@ -157,6 +158,7 @@ impl Iterator for Descent<'_> {
         if !self.wants_level() {
             return None;
         }
+        let optimize = self.settings.optimize;
         let scores = self.scores();
         let record = remove_level(
             self.settings.partition,
@@ -170,17 +172,19 @@ impl Iterator for Descent<'_> {
             &self.level.vertices,
             &scores,
         );
-        if record.len() == 0 && self.seams.hold() && !is_coarse(self.level.vertices.len(), &self.shrinking) {
+        if record.len() == 0 {
+            let num_vertices = self.level.vertices.len();
+            let may_loosen = self.seams.hold() && !is_coarse(optimize, num_vertices, &self.shrinking);
+            if !may_loosen {
+                return None;
+            }
             self.seams.loosen();
             return self.next();
-        }
-        if record.len() == 0 {
-            return None;
         }
         let finer = std::mem::replace(&mut self.level, Level::collect(&self.shrinking));
         let is_little = (record.len() as f64) < LEAST_SHARE * finer.vertices.len() as f64;
         let num_vertices = self.level.vertices.len();
-        if is_little && self.seams.hold() && !is_coarse(num_vertices, &self.shrinking) {
+        if is_little && self.seams.hold() && !is_coarse(optimize, num_vertices, &self.shrinking) {
             self.seams.loosen();
         } else {
             self.is_over = is_little;

@@ -11,10 +11,11 @@ use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
 use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
 use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format, TerrainOptions};
-use crate::mesh::{Attribute, Surface};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, Values};
+use crate::passes::attribute::Declarations;
 use crate::{
     DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Profile, Step,
-    StreamInfo, TriMesh, Update, encode,
+    StreamInfo, TriMesh, Update, encode_with_attributes,
 };
 
 const SMALL: Limits = Limits { max_memory: 16 << 20, max_vertices: 100_000, max_levels: 64 };
@@ -52,7 +53,21 @@ pub fn decode(data: &[u8]) {
         assert_valid(mesh);
         assert_sound(mesh.to_tri_mesh());
     }
-    decoder.preview().into_iter().for_each(assert_sound);
+    if let Some(mesh) = decoder.mesh() {
+        assert_fit(&decoder.attributes(), &mesh.to_cut_mesh());
+    }
+    if let Some((preview, attributes)) = decoder.preview_with_attributes() {
+        assert_fit(&attributes, &preview);
+        assert_sound(preview);
+    }
+}
+
+fn assert_fit(attributes: &Attributes, mesh: &TriMesh) {
+    for attribute in &attributes.list {
+        if let Err(error) = attribute.validate(mesh) {
+            panic!("{}: {error}", attribute.name);
+        }
+    }
 }
 
 /// The same bytes, cut differently, give the same updates, meshes and error. The first eight bytes
@@ -81,6 +96,9 @@ pub fn split_independent(data: &[u8]) {
     assert_eq!(whole.updates, cut.updates);
     assert_eq!(whole.error, cut.error);
     assert_eq!(whole.decoder.is_complete(), cut.decoder.is_complete());
+    if whole.error.is_none() {
+        assert_eq!(whole.decoder.attribute_checksum(), cut.decoder.attribute_checksum());
+    }
 }
 
 /// What a decoder told while bytes were pushed.
@@ -121,8 +139,10 @@ impl Trace {
 pub fn round_trip(data: &[u8]) {
     let mut input = Input(data);
     let options = options_from(&mut input);
+    let seams = [input.u8(), input.u8()];
     let Some(mesh) = mesh_from(&mut input) else { return };
-    let encoded = match encode(&mesh, &options) {
+    let attributes = attributes_of(&mesh, seams);
+    let encoded = match encode_with_attributes(&mesh, &attributes, &options, &|_| {}) {
         Ok(encoded) => encoded,
         Err(EncodeError::NoTriangles | EncodeError::BoundingBox) => return,
         Err(error) => panic!("{error}"),
@@ -138,6 +158,8 @@ pub fn round_trip(data: &[u8]) {
             Ok(Some(_)) => {}
         }
         decoder.mesh().into_iter().for_each(assert_valid);
+        let Some(level) = decoder.mesh() else { panic!("no mesh") };
+        assert_fit(&decoder.attributes(), &level.to_cut_mesh());
     }
     assert!(decoder.is_complete());
     let Some(decoded) = decoder.mesh() else { panic!("no mesh") };
@@ -157,6 +179,69 @@ pub fn round_trip(data: &[u8]) {
         assert_eq!((whole.num_vertices(), whole.num_triangles()), (used.len(), usable().count()));
         assert_eq!(cells_of(decoded), quantised(&mesh, options.quantization, encoded.info.side()));
     }
+    let found = decoder.attributes();
+    assert_eq!(values_of(&decoded.to_cut_mesh(), &found), values_of(&mesh, &attributes));
+}
+
+/// Attributes of every domain that come back exactly. The first number says which, the second how often rows differ.
+fn attributes_of(mesh: &TriMesh, [which, seams]: [u8; 2]) -> Attributes {
+    let mix = |a: usize, b: usize| (a.wrapping_mul(2_654_435_761) ^ b.wrapping_mul(40_503)) >> 3;
+    let every = 1 + usize::from(seams);
+    let mut attributes = Attributes::default();
+    if which & 1 != 0 {
+        let values = (0..3 * mesh.num_vertices()).map(|k| (mix(k, 1) / every) as u8).collect();
+        attributes.list.push(Attribute::new("c", Semantic::Color(0), Domain::Vertex, 3, Values::U8(values)));
+    }
+    if which & 2 != 0 {
+        let value = |(t, v): (usize, &u32)| (mix(t / every, 2) as u8 & 3) ^ (*v as u8);
+        let corners = mesh.triangles().iter().enumerate().flat_map(|(t, vs)| vs.iter().map(move |v| (t, v)));
+        let values = Values::U8(corners.map(value).collect());
+        let indices =
+            (0..3 * mesh.num_triangles()).map(|k| if mix(k, 3) % 97 == 0 { NO_ROW } else { k as u32 });
+        attributes.list.push(Attribute {
+            indices: Some(indices.collect()),
+            ..Attribute::new("w", Semantic::TexCoord(0), Domain::Corner, 1, values)
+        });
+    }
+    if which & 4 != 0 {
+        let names = (0..5).map(|k| format!("n{k}")).collect();
+        let indices = (0..mesh.num_triangles()).map(|t| (mix(t / every, 4) % 5) as u32).collect();
+        attributes.list.push(Attribute {
+            indices: Some(indices),
+            ..Attribute::new("m", Semantic::Material, Domain::Face, 1, Values::Names(names))
+        });
+    }
+    if which & 8 != 0 {
+        let values = (0..mesh.num_triangles()).map(|t| (mix(t, 5) / every) as i16 & 511).collect();
+        attributes.list.push(Attribute::new("f", Semantic::Generic, Domain::Face, 1, Values::I16(values)));
+    }
+    attributes
+}
+
+/// What all corners of the usable triangles have, in an order that does not depend on that of the triangles.
+fn values_of(mesh: &TriMesh, attributes: &Attributes) -> Vec<Vec<Option<Vec<String>>>> {
+    let value = |attribute: &Attribute, row: usize| match attribute.values.names() {
+        Some(names) => vec![names[row].clone()],
+        None => {
+            let n = attribute.num_components;
+            (row * n..row * n + n).map(|k| format!("{:?}", attribute.values.number(k))).collect()
+        }
+    };
+    let corner = |t: usize, c: usize| {
+        let rows = attributes.list.iter().map(move |a| (a, a.row_at_corner(mesh, t, c)));
+        rows.map(|(a, row)| row.map(|row| value(a, row))).collect::<Vec<_>>()
+    };
+    let usable = |&t: &usize| {
+        let [a, b, c] = mesh.triangles()[t];
+        a != b && b != c && c != a
+    };
+    let turned = |t: usize| {
+        let corners = [0, 1, 2].map(|c| corner(t, c));
+        (0..3).map(|k| [0, 1, 2].map(|c| corners[(k + c) % 3].clone()).concat()).min().unwrap_or_default()
+    };
+    let mut all: Vec<_> = (0..mesh.num_triangles()).filter(usable).map(turned).collect();
+    all.sort_unstable();
+    all
 }
 
 /// Any bits under any probabilities, and any residuals under any densities, return.
@@ -359,11 +444,28 @@ fn reframe(data: &[u8]) -> Vec<u8> {
         let repaired = match *kind {
             kind::PASSES if !table.is_empty() => Some(pass_table::write_passes(&table)),
             kind::ANNOUNCED => resize_announced(payload, &chunks),
+            kind::DECLARATIONS => Declarations::read(payload).map(|declared| {
+                let bytes = value_sizes(&chunks);
+                Declarations { bytes, ..declared }.write()
+            }),
             _ => None,
         };
         chunk::write(&mut bytes, *kind, repaired.as_ref().unwrap_or(payload));
     }
     bytes
+}
+
+/// Bytes of the values that follow each pass.
+fn value_sizes(chunks: &[(u8, Vec<u8>)]) -> Vec<u32> {
+    let mut sizes = Vec::new();
+    for (kind, payload) in chunks {
+        match *kind {
+            kind::BASE | kind::SPLIT | kind::REFINE => sizes.push(0),
+            kind::ATTRIBUTES => sizes.iter_mut().last().into_iter().for_each(|s| *s = payload.len() as u32),
+            _ => {}
+        }
+    }
+    sizes
 }
 
 /// The announced chunks with the sizes of those that are there; `None` if they make no sense.

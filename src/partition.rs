@@ -157,7 +157,7 @@ pub(crate) fn remove_level(
         Partition::Balanced => {
             let mut free = candidates(surface, memory, vertices, scores, thinning);
             free.retain(|&v| !anchors.contain(v));
-            leave_seams(surface, seams, vertices.len(), &mut free);
+            leave_seams(optimize, surface, seams, vertices.len(), &mut free);
             let chosen = closely_packed(surface, &free);
             remove_as_decoded(surface, geometry, &chosen, thinning.tolerance, memory, anchors, seams)
         }
@@ -280,16 +280,23 @@ fn candidates(
     free
 }
 
-/// Whether so few vertices are left that they may as well be the base, if seams want them.
-pub(crate) fn is_coarse(num_vertices: usize, surface: &ShrinkingSurface) -> bool {
-    /// Share of the vertices of the finest level.
-    const COARSE: f64 = 1.0 / 32.0;
-    num_vertices as f64 <= COARSE * surface.surface.corner_of.len() as f64
+/// Whether so few vertices are left that they may as well be the base, if seams want them. The smallest file is the one
+/// whose seams are kept, unless there are only seams from the start.
+pub(crate) fn is_coarse(optimize: Optimize, num_vertices: usize, surface: &ShrinkingSurface) -> bool {
+    let num_finest = surface.surface.corner_of.len();
+    let share = if optimize == Optimize::Size { 0.999 } else { 1.0 / 32.0 };
+    num_vertices as f64 <= share * num_finest as f64
 }
 
 /// Keeps the vertices where seams end or meet, as long as there are others, or the level is coarse: where seams are
 /// everywhere they are no reason to stay.
-fn leave_seams(surface: &ShrinkingSurface, seams: &mut Seams, num_vertices: usize, free: &mut Vec<u32>) {
+fn leave_seams(
+    optimize: Optimize,
+    surface: &ShrinkingSurface,
+    seams: &mut Seams,
+    num_vertices: usize,
+    free: &mut Vec<u32>,
+) {
     /// Share of the vertices that could go otherwise.
     const LEAST_FREE: f64 = 0.125;
     if !seams.hold() {
@@ -297,11 +304,11 @@ fn leave_seams(surface: &ShrinkingSurface, seams: &mut Seams, num_vertices: usiz
     }
     let mut star = Star::default();
     let kept: Vec<u32> = free.iter().copied().filter(|&v| may_go(seams, surface, v, &mut star)).collect();
-    if is_coarse(num_vertices, surface) || kept.len() as f64 >= LEAST_FREE * free.len() as f64 {
+    if is_coarse(optimize, num_vertices, surface) || kept.len() as f64 >= LEAST_FREE * free.len() as f64 {
         *free = kept;
     } else {
         seams.loosen();
-        leave_seams(surface, seams, num_vertices, free);
+        leave_seams(optimize, surface, seams, num_vertices, free);
     }
 }
 

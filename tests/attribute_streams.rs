@@ -272,3 +272,66 @@ fn pieces_and_slices_make_no_difference() {
     assert!(decoder.is_complete());
     assert_eq!(decoder.attributes(), whole);
 }
+
+/// The charts of an atlas: of each row of texture coordinates the piece of the surface that it belongs to.
+#[cfg(feature = "io")]
+fn charts(mesh: &TriMesh, uv: &Attribute) -> Vec<usize> {
+    fn root(of: &mut [usize], mut k: usize) -> usize {
+        while of[k] != k {
+            of[k] = of[of[k]];
+            k = of[k];
+        }
+        k
+    }
+    let mut of: Vec<usize> = (0..uv.num_rows()).collect();
+    for t in 0..mesh.num_triangles() {
+        let rows = [0, 1, 2].map(|c| uv.row_at_corner(mesh, t, c).unwrap());
+        for other in [rows[1], rows[2]] {
+            let (a, b) = (root(&mut of, rows[0]), root(&mut of, other));
+            of[a] = b;
+        }
+    }
+    (0..of.len()).map(|k| root(&mut of, k)).collect()
+}
+
+/// On every level of a real model the corners of each triangle lie in one chart.
+#[test]
+#[cfg(feature = "io")]
+fn the_charts_of_spot_stay_apart() {
+    let Some(corpus) = common::corpus::corpus() else { return };
+    let file = lwc::io::read(corpus.join("spot.obj")).unwrap();
+    let uv = file.attributes.find(Semantic::TexCoord(0)).unwrap();
+    let chart_of = charts(&file.mesh, uv);
+    let mut fine = EncodeOptions::default();
+    // So many bits that every row has a place of its own.
+    fine.uv_bits = 20;
+    let encoded = encode(&file.mesh, &all(vec![uv.clone()]), &fine);
+    let place = |u: f64, v: f64| [u, v].map(|x| (x * 16384.0).round() as i64);
+    let mut at: HashMap<_, Vec<usize>> = HashMap::new();
+    for (row, &chart) in chart_of.iter().enumerate() {
+        let [u, v] = [0, 1].map(|k| uv.number(row, k).unwrap());
+        at.entry(place(u, v)).or_default().push(chart);
+    }
+    let mut decoder = Decoder::new(Limits::default());
+    decoder.feed(&encoded.bytes).unwrap();
+    let (mut apart, mut across) = (0, 0);
+    while decoder.step().unwrap().is_some() {
+        // The values of the pass come with the next step.
+        let done = decoder.passes_done();
+        let mut ahead = Decoder::new(Limits::default());
+        ahead.push(&encoded.bytes[..encoded.info.passes()[done - 1].end as usize]).unwrap();
+        let (mesh, found) = ahead.preview_with_attributes().unwrap();
+        let found = &found.list[0];
+        for t in 0..mesh.num_triangles() {
+            let charts = [0, 1, 2].map(|c| {
+                let row = found.row_at_corner(&mesh, t, c).unwrap();
+                let [u, v] = [0, 1].map(|k| found.number(row, k).unwrap());
+                at.get(&place(u, v)).cloned().unwrap_or_default()
+            });
+            let is_apart = charts[0].iter().any(|c| charts[1].contains(c) && charts[2].contains(c));
+            *(if is_apart { &mut apart } else { &mut across }) += 1;
+        }
+    }
+    assert_eq!(across, 0, "of {apart} triangles");
+    assert!(apart > 10_000);
+}

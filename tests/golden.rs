@@ -121,23 +121,25 @@ fn check(streams: &[(String, Vec<u8>)], folder: &Path) {
 fn attribute_lines_of(name: &str, stream: &[u8]) -> String {
     let info = StreamInfo::read(stream).unwrap().unwrap();
     let mut lines = String::new();
+    if info.attributes().is_empty() {
+        return lines;
+    }
     for (pass, end) in info.passes().iter().map(|pass| pass.end as usize).enumerate() {
         let mut decoder = Decoder::new(Limits::default());
         decoder.push(&stream[..end]).unwrap();
         let mesh = decoder.mesh().unwrap().to_tri_mesh();
         let attributes = decoder.attributes();
         assert!(attributes.list.iter().all(|attribute| attribute.validate(&mesh).is_ok()), "{name}");
-        if !attributes.list.is_empty() {
-            writeln!(lines, "{name} {pass} {:08x}", decoder.attribute_checksum()).unwrap();
-        }
+        writeln!(lines, "{name} {pass} {:08x}", decoder.attribute_checksum()).unwrap();
     }
     lines
 }
 
 #[test]
 fn the_attributes_of_every_golden_stream_decode_to_their_checksums() {
+    let streams = streams();
     let recorded = std::fs::read_to_string(folder().join("attributes.txt")).unwrap();
-    let found: String = streams().iter().map(|(name, stream)| attribute_lines_of(name, stream)).collect();
+    let found: String = streams.iter().map(|(name, stream)| attribute_lines_of(name, stream)).collect();
     assert_eq!(found, recorded);
     assert!(found.lines().count() > 10);
 }

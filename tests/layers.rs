@@ -59,6 +59,7 @@ const LAYERS: [(&str, &[&str]); 22] = [
             "limits",
             "mesh",
             "partition",
+            "passes",
             "profile",
         ],
     ),

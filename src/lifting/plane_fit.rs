@@ -82,12 +82,13 @@ impl PlaneFit {
         let ridge = (xx + yy) * STIFFNESS + 1e-9;
         let (xx, yy) = (xx + ridge, yy + ridge);
         let determinant = xx * yy - xy * xy;
-        if !(determinant > 0.0) {
-            return mean;
+        if determinant > 0.0 {
+            let gx = (bx * yy - by * xy) / determinant;
+            let gy = (by * xx - bx * xy) / determinant;
+            mean - (gx * self.centre[0] + gy * self.centre[1])
+        } else {
+            mean
         }
-        let gx = (bx * yy - by * xy) / determinant;
-        let gy = (by * xx - bx * xy) / determinant;
-        mean - (gx * self.centre[0] + gy * self.centre[1])
     }
 
     /// The function z ↦ a z + b, or with `mirrored` of the conjugate of z, that fits two channels best.
@@ -97,7 +98,7 @@ impl PlaneFit {
         let [ux, uy] = self.slopes(channels[0], means[0]);
         let [vx, vy] = self.slopes(channels[1], means[1]);
         let total = self.moments[0] + self.moments[2];
-        if !(total > 0.0) {
+        if total.is_nan() || total <= 0.0 {
             return Conformal { values: means, explained: 0.0, misfit: 0.0 };
         }
         let re = (ux + sign * vy) / total;

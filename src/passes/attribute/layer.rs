@@ -229,7 +229,8 @@ impl Layer {
             self.inherit_corners(coder, mesh, star, closed, truth, desk);
         }
         let corners = std::mem::take(&mut desk.corners);
-        self.code_seams(coder, mesh, vertex, &corners, closed, truth, desk);
+        let fan = Fan { vertex, corners: &corners, closed };
+        self.code_seams(coder, mesh, fan, truth, &mut desk.is_seam);
         // Begin behind a seam, then from seam to seam.
         let n = corners.len();
         let start = if closed { desk.is_seam.iter().position(|&s| s).unwrap_or(0) } else { 0 };
@@ -259,11 +260,9 @@ impl Layer {
         &mut self,
         coder: &mut B,
         mesh: &GridMesh,
-        vertex: u32,
-        corners: &[u32],
-        closed: bool,
+        Fan { vertex, corners, closed }: Fan,
         truth: Option<&Truth>,
-        desk: &mut Desk,
+        found: &mut Vec<bool>,
     ) {
         /// Whether a seam runs at the far end of a spoke, if that is known.
         const UNKNOWN: usize = 2;
@@ -280,23 +279,23 @@ impl Layer {
         let is_seam = |i: usize| {
             truth.is_some_and(|truth| truth.of[corners[i] as usize] != truth.of[before(i) as usize])
         };
-        desk.is_seam.clear();
-        desk.is_seam.resize(n, false);
+        found.clear();
+        found.resize(n, false);
         let ends = (first..n).filter(|&i| at_end(i) == 1).count().min(3);
         if coder.is_guessing() {
             // A seam that comes goes on.
-            (first..n).for_each(|i| desk.is_seam[i] = ends > 1 && at_end(i) == 1);
+            (first..n).for_each(|i| found[i] = ends > 1 && at_end(i) == 1);
             return;
         }
         let any = (first..n).any(is_seam);
         if !self.models.has_seam.code(coder, ends * 2 + usize::from(closed), any) {
             return;
         }
-        let mut found = 0;
+        let mut count = 0;
         for i in first..n {
-            let context = at_end(i) * 3 + found.min(2);
-            desk.is_seam[i] = self.models.seam.code(coder, context, is_seam(i));
-            found += usize::from(desk.is_seam[i]);
+            let context = at_end(i) * 3 + count.min(2);
+            found[i] = self.models.seam.code(coder, context, is_seam(i));
+            count += usize::from(found[i]);
         }
     }
 
@@ -600,6 +599,14 @@ impl Layer {
             Err(Malformed("a row that its table does not have"))
         }
     }
+}
+
+/// The corners at a vertex.
+#[derive(Clone, Copy)]
+struct Fan<'a> {
+    vertex: u32,
+    corners: &'a [u32],
+    closed: bool,
 }
 
 /// The star of a vertex, and the patch that it replaced.
