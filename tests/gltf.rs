@@ -336,6 +336,58 @@ fn scenes_are_written_in_their_places() {
 }
 
 #[test]
+fn a_stream_holds_a_scene() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let small: Vec<f32> = SQUARE[..9].iter().map(|c| c / 8.0).collect();
+    let small = model.floats("VEC3", 3, &small);
+    let shade = model.bytes("SCALAR", 1, &[1, 2, 250]);
+    let primitive = |position: usize| json!({ "attributes": { "POSITION": position }, "material": 0 });
+    let shaded = json!([{ "attributes": { "POSITION": small, "_SHADE": shade } }]);
+    let document = model.document(json!({
+        "meshes": [{ "primitives": [primitive(position)] }, { "primitives": shaded }],
+        "materials": [{ "name": "stone", "doubleSided": true }],
+        "nodes": [
+            { "mesh": 0, "name": "floor" },
+            { "mesh": 1, "scale": [9, 9, 9], "translation": [1, 2, 3] },
+            { "mesh": 1 },
+        ],
+        "scenes": [{ "nodes": [0, 1, 2] }],
+    }));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.gltf");
+    fs::write(&path, document.to_string()).unwrap();
+    let scene = io::read_scene(&path).unwrap();
+    let packed = scene.pack().unwrap();
+    assert_eq!(packed.attributes.scene.as_ref().unwrap().exponents, [0, 3]);
+    let mut options = lwc::EncodeOptions::default();
+    options.lossless = true;
+    let encoded = lwc::encode_with_attributes(&packed.mesh, &packed.attributes, &options, &|_| ()).unwrap();
+    assert_eq!(encoded.info.scene().unwrap().instances, scene.instances);
+    let mut decoder = lwc::Decoder::new(lwc::Limits::default());
+    decoder.push(&encoded.bytes).unwrap();
+    let (mesh, attributes) = decoder.to_tri_mesh_with_attributes().unwrap();
+    let again = io::Scene::unpack(&mesh, &attributes).unwrap();
+    assert_eq!(again.instances, scene.instances);
+    assert_eq!(again.gltf_materials, scene.gltf_materials);
+    let sorted = |file: &MeshFile| {
+        let mut positions = file.mesh.positions().to_vec();
+        positions.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        positions
+    };
+    for (a, b) in again.meshes.iter().zip(&scene.meshes) {
+        assert_eq!((sorted(a), a.mesh.num_triangles()), (sorted(b), b.mesh.num_triangles()));
+        let names = |file: &MeshFile| -> Vec<String> {
+            file.attributes.list.iter().map(|attribute| attribute.name.clone()).collect()
+        };
+        assert_eq!(names(a), names(b));
+    }
+    let mut shades: Vec<Option<f64>> = at_corners(&again.meshes[1], "_SHADE");
+    shades.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    assert_eq!(shades, [1.0, 2.0, 250.0].map(Some));
+}
+
+#[test]
 fn materials_and_their_images_are_carried() {
     let mut model = Model::default();
     let position = model.floats("VEC3", 3, &SQUARE[..9]);
