@@ -306,7 +306,7 @@ fn the_charts_of_spot_stay_apart() {
     // So many bits that every row has a place of its own.
     fine.uv_bits = 20;
     let encoded = encode(&file.mesh, &all(vec![uv.clone()]), &fine);
-    let place = |u: f64, v: f64| [u, v].map(|x| (x * 16384.0).round() as i64);
+    let place = |u: f64, v: f64| [u, v].map(|x| (x * 16384.0 + 0.123).round() as i64);
     let mut at: HashMap<_, Vec<usize>> = HashMap::new();
     for (row, &chart) in chart_of.iter().enumerate() {
         let [u, v] = [0, 1].map(|k| uv.number(row, k).unwrap());
