@@ -38,8 +38,8 @@ impl<const N: usize> Filter<N> {
         let grow = if may_grow { 1.0 / FORGETTING } else { 1.0 };
         for i in 0..N {
             self.weights[i] += g[i] * error;
-            for j in i..N {
-                let c = (self.covariance[i][j] - y[i] * g[j]) * grow;
+            for (j, g) in g.into_iter().enumerate().skip(i) {
+                let c = (self.covariance[i][j] - y[i] * g) * grow;
                 self.covariance[i][j] = c;
                 self.covariance[j][i] = c;
             }

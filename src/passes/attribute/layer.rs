@@ -292,10 +292,10 @@ impl Layer {
             return;
         }
         let mut count = 0;
-        for i in first..n {
+        for (i, found) in found.iter_mut().enumerate().skip(first) {
             let context = at_end(i) * 3 + count.min(2);
-            found[i] = self.models.seam.code(coder, context, is_seam(i));
-            count += usize::from(found[i]);
+            *found = self.models.seam.code(coder, context, is_seam(i));
+            count += usize::from(*found);
         }
     }
 
@@ -556,7 +556,7 @@ impl Layer {
             }
         }
         // Stable: of equals the first one around.
-        found.sort_by(|a, b| b.1.cmp(&a.1));
+        found.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
         let num_rows = found.len().min(7);
         let kind = usize::from(is_exception);
         for (k, &(row, count)) in found.iter().take(MAX_REPEATED).enumerate() {

@@ -12,4 +12,6 @@ pub(crate) mod octahedron;
 mod rows;
 
 pub(crate) use declaration::{Coding, Declaration, Declarations};
-pub(crate) use layer::{Brought, Desk, Layer, Truth};
+#[cfg(feature = "encoder")]
+pub(crate) use layer::Truth;
+pub(crate) use layer::{Brought, Desk, Layer};
