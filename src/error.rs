@@ -78,8 +78,8 @@ pub enum EncodeError {
         what: String,
     },
     /// The descriptor cannot see the attributes.
-    #[error(transparent)]
-    Features(#[from] crate::descriptors::FeaturesError),
+    #[error("{0}")]
+    DescriptorAttributes(String),
     /// The coordinates span more than double precision can hold.
     #[error("the bounding box of the mesh overflows double precision")]
     BoundingBox,

@@ -357,12 +357,21 @@ fn gltf_comes_in_and_goes_out() {
     document["nodes"] = serde_json::json!([{ "mesh": 0 }, { "mesh": 0, "translation": [9, 0, 0] }]);
     document["scenes"][0]["nodes"] = serde_json::json!([0, 1]);
     fs::write(workshop.path("two.gltf"), document.to_string()).unwrap();
-    let (_, stderr) = workshop.ok("encode two.gltf");
-    assert!(stderr.contains("note: two.gltf: 2 instances joined into one mesh"), "{stderr}");
-    assert!(!workshop.ok("encode two.gltf --merge").1.contains("joined"));
-    let report = workshop.json("encode two.gltf --json --quiet");
+    let merged = workshop.json("encode two.gltf --merge --json --quiet");
     let single = workshop.json("encode ball.gltf --json --quiet");
-    assert_eq!(report["faces"].as_u64(), single["faces"].as_u64().map(|faces| 2 * faces));
+    assert_eq!(merged["faces"].as_u64(), single["faces"].as_u64().map(|faces| 2 * faces));
+
+    // In a stream it is there once, and comes back in both places.
+    let scene = workshop.json("encode two.gltf --json --quiet --verify");
+    assert_eq!(scene["faces"], single["faces"]);
+    workshop.ok("decode two.lwc -o back.gltf");
+    let back: Value = serde_json::from_slice(&fs::read(workshop.path("back.gltf")).unwrap()).unwrap();
+    assert_eq!((back["meshes"].as_array().unwrap().len(), back["nodes"].as_array().unwrap().len()), (1, 2));
+    let distance = workshop.json("compare two.gltf two.lwc --json");
+    assert!(distance["db"].as_f64().is_none_or(|db| db > 60.0), "{distance}");
+    workshop.ok("decode two.lwc -o back.ply");
+    let distance = workshop.json("compare two.gltf back.ply --json");
+    assert!(distance["db"].as_f64().is_none_or(|db| db > 60.0), "{distance}");
 }
 
 #[test]

@@ -132,7 +132,7 @@ fn the_program_takes_pictures_of_meshes_levels_and_prefixes() {
     folder.ok("render ball.ply -o mesh.png --size 120x90");
     folder.ok("render ball.lwc -o stream.png --size 120x90");
     folder.ok("render ball.lwc -o base.png --size 120x90 --level 0 --shading flat --view top --up z");
-    folder.ok("render ball.lwc -o early.png --size 120x90 --bytes 800 --quiet");
+    folder.ok("render ball.lwc -o early.png --size 120x90 --bytes 400 --quiet");
     folder.ok("render ball.ply -o heat.png --size 120x90 --color-by nfv --clip 2 --background transparent");
     let (width, height, mesh) = folder.png("mesh.png");
     assert_eq!((width, height), (120, 90));

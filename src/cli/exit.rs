@@ -71,7 +71,7 @@ fn code(error: &anyhow::Error) -> u8 {
             _ => DAMAGED,
         }))
         .or(cause.downcast_ref().map(|error| match error {
-            EncodeError::Option { .. } => USAGE,
+            EncodeError::Option { .. } | EncodeError::DescriptorAttributes(_) => USAGE,
             EncodeError::TooLarge(_) => LIMIT,
             _ => INPUT,
         }))

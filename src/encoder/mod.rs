@@ -82,7 +82,8 @@ pub fn encode_with_attributes(
     let vertices: Vec<u32> = source.iter().map(|&v| ordered.vertex_source[v as usize]).collect();
     let elements = attributes::Elements { vertices: &vertices, corners: &ordered.corner_source };
     let quantised = attributes::quantise(mesh, attributes, elements, options)?;
-    let features = features(mesh, attributes, &vertices, options)?;
+    let features = features(mesh, attributes, &vertices, options)
+        .map_err(|error| EncodeError::DescriptorAttributes(error.to_string()))?;
     drop(vertices);
     let glued = trailing::kept(&source);
     let exact = Exact { mesh, grid: &grid, ordered: &ordered, source: &source, loose: &loose, options };
