@@ -27,9 +27,12 @@ pub(crate) fn read(payload: &[u8]) -> Option<SceneTable> {
         let mut entries = transform.iter_mut().flatten();
         match reader.u8()? {
             UNMOVED => {}
-            MOVED => entries.skip(3).step_by(4).try_for_each(|e| Some(*e = f64::from(reader.f32()?)))?,
-            SINGLE => entries.try_for_each(|e| Some(*e = f64::from(reader.f32()?)))?,
-            DOUBLE => entries.try_for_each(|e| Some(*e = reader.f64()?))?,
+            MOVED => entries.skip(3).step_by(4).try_for_each(|e| single(&mut reader, e))?,
+            SINGLE => entries.try_for_each(|e| single(&mut reader, e))?,
+            DOUBLE => entries.try_for_each(|e| {
+                *e = reader.f64()?;
+                Some(())
+            })?,
             _ => return None,
         }
         let is_finite = transform.iter().flatten().all(|entry| entry.is_finite());
@@ -69,6 +72,11 @@ pub(crate) fn write(table: &SceneTable) -> Vec<u8> {
         }
     }
     bytes
+}
+
+fn single(reader: &mut Reader, entry: &mut f64) -> Option<()> {
+    *entry = f64::from(reader.f32()?);
+    Some(())
 }
 
 /// `None` if the payload breaks a rule.
@@ -138,9 +146,8 @@ mod tests {
 
     #[test]
     fn materials_come_back_and_cut_ones_are_refused() {
-        let mut materials = GltfMaterials::default();
-        materials.json = "{\"materials\":[]}".to_owned();
-        materials.images = vec![vec![1, 2, 3], Vec::new()];
+        let json = "{\"materials\":[]}".to_owned();
+        let materials = GltfMaterials { json, images: vec![vec![1, 2, 3], Vec::new()] };
         let bytes = write_materials(&materials);
         assert_eq!(read_materials(&bytes), Some(materials));
         assert!((0..bytes.len()).all(|end| read_materials(&bytes[..end]).is_none()));

@@ -1,6 +1,7 @@
 //! The seven descriptors against a slow transcription of the paper, surfaces of known curvature, symmetries
 //! of the definition, and meshes that are hardly meshes.
 #![cfg(feature = "encoder")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 mod oracle;

@@ -241,8 +241,8 @@ mod tests {
         let column = |name: &str, semantic| {
             Attribute::new(name, semantic, Domain::Vertex, 1, Values::U8(vec![0, 1, 2, 3]))
         };
-        let mut attributes = Attributes::default();
-        attributes.list = vec![column("a b", Semantic::Generic), column("c", Semantic::Color(1))];
+        let list = vec![column("a b", Semantic::Generic), column("c", Semantic::Color(1))];
+        let attributes = Attributes { list, ..Attributes::default() };
         let found = |text: &str| choice(text).unwrap().find(&attributes).map(|found| found.name.clone());
         assert_eq!(found("color").as_deref(), Some("c"));
         assert_eq!(found("a/b").as_deref(), Some("a b"));

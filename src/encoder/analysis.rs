@@ -32,14 +32,21 @@ pub(super) struct Hierarchy {
     pub(super) seams: Seams,
 }
 
+/// What goes down with a surface.
+pub(super) struct Companions {
+    /// The vertices that always stay.
+    pub(super) glued: BitVec,
+    pub(super) seams: Seams,
+    /// Attributes that the descriptor sees.
+    pub(super) features: Option<Features>,
+}
+
 /// Goes down from `surface`, whose vertices have the places `cells`. Nothing else is looked at, so that a
-/// decoded mesh gives the same levels. The vertices `glued` are in all of them.
+/// decoded mesh gives the same levels.
 pub(super) fn analyse(
     surface: Surface,
     cells: &[[i32; 3]],
-    glued: BitVec,
-    seams: Seams,
-    features: Option<Features>,
+    companions: Companions,
     options: &EncodeOptions,
     max_valence: Option<u32>,
     progress: &(dyn Fn(Progress) + Sync),
@@ -52,6 +59,7 @@ pub(super) fn analyse(
     let mean_edge = descriptors::mean_edge_length(&mesh);
     let (positions, _) = mesh.into_parts();
     let geometry = Geometry { grid: cells, positions: &positions };
+    let Companions { glued, seams, features } = companions;
     let settings = Settings { max_valence, ..settings(options) };
     let descent = Descent::new(surface, geometry, mean_edge, settings, glued);
     let mut descent = descent.with_seams(seams).with_features(features);

@@ -93,17 +93,9 @@ pub fn encode_with_attributes(
     let mut bytes: Vec<u8> = Vec::new();
     for (i, max_valence) in attempts.enumerate() {
         let taken = if i == others.len() { surface.take() } else { surface.clone() }.unwrap_or_default();
-        let seams = quantised.seams();
-        let hierarchy = analysis::analyse(
-            taken,
-            &cells,
-            glued.clone(),
-            seams,
-            features.clone(),
-            options,
-            max_valence,
-            progress,
-        );
+        let (glued, seams, features) = (glued.clone(), quantised.seams(), features.clone());
+        let companions = analysis::Companions { glued, seams, features };
+        let hierarchy = analysis::analyse(taken, &cells, companions, options, max_valence, progress);
         let tried = if options.steps_per_edge.is_some() { &[None] } else { options.steps_tried() };
         for &steps in tried {
             let steps = options.steps_per_edge.or(steps);

@@ -341,7 +341,7 @@ fn write_file(
 /// As [`write_with_attributes`], and if the merged mesh is too large.
 #[cfg(feature = "gltf")]
 pub fn write_scene(path: impl AsRef<Path>, scene: &Scene) -> Result<WriteReport, WriteError> {
-    write_file(path.as_ref(), |mut out, format| write_scene_to(&mut out, scene, format))
+    write_file(path.as_ref(), |out, format| write_scene_to(out, scene, format))
 }
 
 /// As [`write_scene`], uncompressed.

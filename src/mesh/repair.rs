@@ -23,6 +23,7 @@ pub(crate) struct Repaired {
     /// For each vertex of `surface` the vertex of the mesh it stands for. Ascending, so that ties of
     /// Algorithm 1 break by the indices of the mesh.
     pub(crate) source: Vec<u32>,
+    #[cfg_attr(not(any(feature = "experiment", test)), allow(dead_code))] // Only the experiment tells it.
     pub(crate) report: RepairReport,
 }
 

@@ -80,10 +80,7 @@ pub(super) fn read(
         "extensionsUsed": of_materials(&document.extensions_used),
         "extensionsRequired": of_materials(&document.extensions_required),
     });
-    let mut carried = GltfMaterials::default();
-    carried.json = json.to_string();
-    carried.images = embedded;
-    Ok(Some(carried))
+    Ok(Some(GltfMaterials { json: json.to_string(), images: embedded }))
 }
 
 /// The lists for a document, images referring to buffer views that `view` makes of their bytes. What is not of

@@ -49,7 +49,7 @@ impl Scene {
     /// have no triangles have no vertices either.
     pub fn unpack(mesh: &TriMesh, attributes: &Attributes) -> Option<Self> {
         let table = attributes.scene.as_ref()?;
-        let which = attributes.list.iter().position(|attribute| is_scene_mesh(attribute));
+        let which = attributes.list.iter().position(is_scene_mesh);
         let number = |t: usize| {
             let attribute = &attributes.list[which?];
             attribute.number(attribute.row(t)?, 0)
