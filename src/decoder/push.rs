@@ -19,6 +19,10 @@ use crate::{DecodeError, Profile, TriMesh, scene};
 use std::collections::VecDeque;
 use std::ops::Range;
 
+/// Whether the decoder knows what stands beside the surface. Without that all of it is skipped as chunks that nobody
+/// knows, and the compiler leaves out what would read it.
+const ASSETS: bool = cfg!(feature = "assets");
+
 /// What one finished pass changed.
 ///
 /// Vertices and triangles keep their indices for ever: new ones are appended, triangles of a split
@@ -207,7 +211,8 @@ impl Decoder {
         if let Some((running, chunk)) = self.running.take() {
             return self.advance(running, chunk, work);
         }
-        if let Some(chunk) = self.running_attributes.take()
+        if ASSETS
+            && let Some(chunk) = self.running_attributes.take()
             && !self.advance_attributes(chunk, work)?
         {
             return Ok(Step::Unfinished);
@@ -277,28 +282,29 @@ impl Decoder {
                         scene: self.scene.take(),
                     });
                 }
-                (kind::DECLARATIONS, _) if self.attributes.is_none() => {
+                (kind::DECLARATIONS, _) if ASSETS && self.attributes.is_none() => {
                     let needed = 2 * payload.len() as u64 + self.frames.buffered() as u64;
                     Limits::check("memory", needed, self.limits.max_memory)?;
                     let declared =
                         Declarations::read(payload).ok_or(malformed("declarations of attributes"))?;
                     self.attributes = Some(AttributeDecoder::new(declared));
                 }
-                (kind::DECLARATIONS, _) => return Err(out_of_order(&chunk)),
+                (kind::DECLARATIONS, _) if ASSETS => return Err(out_of_order(&chunk)),
                 (kind::PROVENANCE, _) => self.provenance = Provenance::read(payload),
-                (kind::SCENE, _) if self.scene.is_none() => {
+                (kind::SCENE, _) if ASSETS && self.scene.is_none() => {
                     self.scene = Some(scene::read(payload).ok_or(malformed("the scene"))?);
                 }
-                (kind::MATERIALS, _) if self.materials.is_none() => {
+                (kind::MATERIALS, _) if ASSETS && self.materials.is_none() => {
                     let needed = payload.len() as u64 + self.frames.buffered() as u64;
                     Limits::check("memory", needed, self.limits.max_memory)?;
                     self.materials = Some(scene::read_materials(payload).ok_or(malformed("materials"))?);
                 }
-                (kind::SCENE | kind::MATERIALS, _) => return Err(out_of_order(&chunk)),
-                (kind::ANNOUNCED, _) if self.announced.is_none() => {
+                (kind::SCENE | kind::MATERIALS, _) if ASSETS => return Err(out_of_order(&chunk)),
+                (kind::ANNOUNCED, _) if ASSETS && self.announced.is_none() => {
                     self.announced = Some(Announced::read(payload).ok_or(malformed("the announced chunks"))?);
                 }
-                (kind::ANNOUNCED | kind::HEADER | kind::PASSES, _) => return Err(out_of_order(&chunk)),
+                (kind::ANNOUNCED, _) if ASSETS => return Err(out_of_order(&chunk)),
+                (kind::HEADER | kind::PASSES, _) => return Err(out_of_order(&chunk)),
                 _ => skip(&chunk)?,
             }
         }
@@ -340,7 +346,8 @@ impl Decoder {
     /// Notes which chunks belong to the pass that has just been done, and, if it was the last one of the stream,
     /// which follow that.
     fn await_companions(&mut self, pass: &PassInfo, patches: Patches, first: usize) {
-        if pass.attribute_bytes > 0
+        if ASSETS
+            && pass.attribute_bytes > 0
             && let Some(attributes) = &mut self.attributes
         {
             attributes.expect((pass.kind == PassKind::Split).then_some(patches), first);
@@ -356,6 +363,9 @@ impl Decoder {
 
     /// Takes a chunk that was awaited; false if it is half done.
     fn begin_companion(&mut self, chunk: Chunk, work: &mut Work) -> Result<bool, DecodeError> {
+        if !ASSETS {
+            return Err(out_of_order(&chunk));
+        }
         if chunk.kind != kind::ATTRIBUTES {
             self.read_extra(&chunk, work)?;
             self.awaited.pop_front();
@@ -471,7 +481,7 @@ impl Decoder {
     pub fn attributes(&self) -> Attributes {
         let cut = self.frames.cut_chunk(None).filter(|(kind, _)| self.awaited.front() == Some(kind));
         let cut = cut.map_or(&[][..], |(_, payload)| payload);
-        let known = self.attributes.as_ref().filter(|_| self.done > 0);
+        let known = self.attributes.as_ref().filter(|_| ASSETS && self.done > 0);
         self.with_scene(known.map(|known| known.attributes(&self.passes.mesh, cut)).unwrap_or_default())
     }
 
@@ -511,7 +521,7 @@ impl Decoder {
         let cut = LevelMesh { cells, triangles, precision: pass.precision, ..complete };
         let first = complete.num_vertices();
         let attributes = match &self.attributes {
-            Some(attributes) if pass.kind == PassKind::Split => {
+            Some(attributes) if ASSETS && pass.kind == PassKind::Split => {
                 self.with_scene(attributes.with_cut(&mesh, &patches, first))
             }
             _ => self.attributes(),
