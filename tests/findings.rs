@@ -16,6 +16,12 @@ fn a_payload_of_zeros_is_not_damage() {
     fuzzing::range_coder(&finding("range_coder_payload_of_zeros.bin"));
 }
 
+/// A cut chunk of attributes that was nonsense left those behind it without any value.
+#[test]
+fn attributes_are_without_gaps_whatever_has_come() {
+    fuzzing::decode(&finding("decode_attributes_of_nonsense.bin"));
+}
+
 /// A few inputs of the fuzz targets that reach attributes, made up without a fuzzer.
 #[test]
 fn attributes_survive_random_meshes_and_damage() {

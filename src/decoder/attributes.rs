@@ -87,12 +87,11 @@ impl AttributeDecoder {
     /// the help of the beginning of their payload if no other part has been decoded.
     pub(super) fn attributes(&self, mesh: &GridMesh, cut: &[u8]) -> Attributes {
         let Some(pending) = &self.state.pending else { return self.collect(&self.state.layers) };
-        let mut ahead = self.state.clone();
         let has_begun = pending.coder.is_some();
-        let mut coder = RangeDecoder::of_cut(if has_begun || cut.len() < 5 { &[] } else { cut });
-        // A payload that is nonsense has its error when it is complete.
-        let _ = ahead.advance(mesh, &mut coder, &mut Work::unlimited(), |_, _| {});
-        self.collect(&ahead.layers)
+        let cut = if has_begun || cut.len() < 5 { &[] } else { cut };
+        // A payload that is nonsense has its error when it is complete; until then it tells nothing.
+        let known = self.state.clone().guessed(mesh, cut).or_else(|| self.state.clone().guessed(mesh, &[]));
+        self.collect(&known.as_ref().unwrap_or(&self.state).layers)
     }
 
     /// Attributes of a mesh to which some vertices of a split have come back that is not complete.
@@ -100,8 +99,7 @@ impl AttributeDecoder {
         let mut ahead = self.state.clone();
         let patches = Some(patches.clone());
         ahead.pending = Some(Pending { patches, first, coder: None, layer: 0, place: 0 });
-        let _ = ahead.advance(mesh, &mut RangeDecoder::of_cut(&[]), &mut Work::unlimited(), |_, _| {});
-        self.collect(&ahead.layers)
+        self.collect(&ahead.guessed(mesh, &[]).as_ref().unwrap_or(&self.state).layers)
     }
 
     /// Checksum of the rows (`format/SPEC.md`, section 9).
@@ -125,6 +123,14 @@ impl AttributeDecoder {
 }
 
 impl State {
+    /// With all values of the pending pass, those guessed that the beginning of a payload does not decide; `None` if
+    /// it is nonsense.
+    fn guessed(mut self, mesh: &GridMesh, cut: &[u8]) -> Option<Self> {
+        let is_done =
+            self.advance(mesh, &mut RangeDecoder::of_cut(cut), &mut Work::unlimited(), |_, _| {}).ok()?;
+        is_done.then_some(self)
+    }
+
     fn advance(
         &mut self,
         mesh: &GridMesh,
