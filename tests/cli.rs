@@ -339,6 +339,30 @@ fn what_a_stream_does_not_keep_is_told() {
 }
 
 #[test]
+fn what_lossless_does_not_cover_is_said() {
+    let workshop = Workshop::new();
+    let shaded = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        property float heat\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+        0 0 0 0.1\n1 0 0 0.2\n0 1 0 0.3\n3 0 1 2\n";
+    fs::write(workshop.path("shaded.ply"), shaded).unwrap();
+    let (_, stderr) = workshop.ok("encode shaded.ply --lossless --keep-isolated");
+    assert!(stderr.contains("--lossless is for positions; quantised: heat"), "{stderr}");
+    assert!(stderr.contains("kept without attributes"), "{stderr}");
+    assert!(!workshop.ok("encode shaded.ply").1.contains("quantised"));
+
+    // And descriptors say which of them know attributes.
+    workshop.ok("encode shaded.ply -d pca-qem --descriptor-attributes heat:5");
+    for (line, part) in [
+        ("encode shaded.ply --descriptor-attributes heat", "harris3d knows no attributes"),
+        ("encode shaded.ply -d pca --descriptor-attributes color", "no attribute `color`"),
+        ("describe shaded.ply -d nfv --descriptor-attributes heat", "nfv knows no attributes"),
+    ] {
+        let stderr = workshop.fails(line, 2);
+        assert!(stderr.contains(part), "{line}: {stderr}");
+    }
+}
+
+#[test]
 fn gltf_comes_in_and_goes_out() {
     let workshop = Workshop::new();
     workshop.ball_stream();
