@@ -63,8 +63,6 @@ pub struct Encode {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
-    pub terrain: Terrain,
-    #[command(flatten)]
     pub scale: Scale,
     /// Bits per coordinate, 1 to 30 [default: 12].
     ///
@@ -157,6 +155,9 @@ pub struct Encode {
     /// Print one JSON object in place of the summary (to standard error with `-o -`).
     #[arg(long)]
     pub json: bool,
+    // Last: its heading would cover what follows.
+    #[command(flatten)]
+    pub terrain: Terrain,
 }
 
 /// Which points of a point cloud become vertices.
