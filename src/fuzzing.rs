@@ -11,7 +11,7 @@ use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
 use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
 use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format, TerrainOptions};
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, Values};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, Values, has_three_vertices};
 use crate::passes::attribute::Declarations;
 use crate::{
     DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Profile, Step,
@@ -172,7 +172,7 @@ pub fn round_trip(data: &[u8]) {
         assert_eq!(whole.triangles(), mesh.triangles());
     }
     if !options.keep_isolated && !options.keep_degenerate {
-        let usable = || mesh.triangles().iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+        let usable = || mesh.triangles().iter().filter(|t| has_three_vertices(t));
         let mut used: Vec<u32> = usable().flatten().copied().collect();
         used.sort_unstable();
         used.dedup();
@@ -231,10 +231,7 @@ fn values_of(mesh: &TriMesh, attributes: &Attributes) -> Vec<Vec<Option<Vec<Stri
         let rows = attributes.list.iter().map(move |a| (a, a.row_at_corner(mesh, t, c)));
         rows.map(|(a, row)| row.map(|row| value(a, row))).collect::<Vec<_>>()
     };
-    let usable = |&t: &usize| {
-        let [a, b, c] = mesh.triangles()[t];
-        a != b && b != c && c != a
-    };
+    let usable = |&t: &usize| has_three_vertices(&mesh.triangles()[t]);
     let turned = |t: usize| {
         let corners = [0, 1, 2].map(|c| corner(t, c));
         (0..3).map(|k| [0, 1, 2].map(|c| corners[(k + c) % 3].clone()).concat()).min().unwrap_or_default()
@@ -626,7 +623,7 @@ fn cells_of(mesh: LevelMesh) -> Vec<CellTriangle> {
 
 /// The usable triangles of `mesh` on the grid that the vertices they use span.
 fn quantised(mesh: &TriMesh, precision: u32, side: f64) -> Vec<CellTriangle> {
-    let usable = || mesh.triangles().iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+    let usable = || mesh.triangles().iter().filter(|t| has_three_vertices(t));
     let at = |v: u32| mesh.positions()[v as usize];
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for p in usable().flatten().map(|&v| at(v)) {

@@ -27,6 +27,8 @@ mod limits;
 pub mod mesh;
 #[cfg(feature = "metrics")]
 pub mod metrics;
+#[cfg(feature = "encoder")]
+mod morton;
 
 #[cfg(feature = "encoder")]
 mod partition;

@@ -1,4 +1,4 @@
-//! Chunks `n` and `m` (`format/SPEC.md`, sections 4.6 and 7.12): the meshes of a scene and where they stand; how
+//! Chunks `n` and `m` (`format/SPEC.md`, sections 4.6 and 4.7): the meshes of a scene and where they stand; how
 //! materials look.
 
 use crate::bitstream::bytes::Reader;

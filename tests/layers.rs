@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 22] = [
+const LAYERS: [(&str, &[&str]); 23] = [
     ("error", &[]),
     ("limits", &["error"]),
     ("lanes", &[]),
+    ("morton", &[]),
     ("profile", &[]),
     ("bitstream", &["lanes"]),
     ("mesh", &[]),
@@ -16,7 +17,7 @@ const LAYERS: [(&str, &[&str]); 22] = [
     ("io", &["mesh"]),
     ("metrics", &["mesh"]),
     ("render", &["mesh"]),
-    ("descriptors", &["mesh"]),
+    ("descriptors", &["mesh", "morton"]),
     ("lifting", &["lanes"]),
     ("simplify", &["mesh"]),
     ("levels", &["mesh", "simplify"]),
@@ -34,6 +35,7 @@ const LAYERS: [(&str, &[&str]); 22] = [
             "error",
             "limits",
             "mesh",
+            "morton",
             "partition",
             "passes",
             "profile",

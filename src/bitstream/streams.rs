@@ -1,4 +1,4 @@
-//! Payloads of the profile *fast* (`format/SPEC.md`, section 6.5): decisions and symbols, sorted into
+//! Payloads of the profile *fast* (`format/SPEC.md`, section 6.6): decisions and symbols, sorted into
 //! streams by what is known of them, packed, and compressed all together.
 
 use super::bytes::Reader;

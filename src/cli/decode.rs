@@ -24,9 +24,9 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
         options = options.level(level);
     }
     let DecodedStream { decoder, error } = source.decode(args.bytes, options, ui)?;
-    let mesh = sound_mesh(&decoder, error, args, &source.name(), ui).with_context(|| source.name())?;
+    let sound = sound_mesh(&decoder, error, args, &source.name(), ui);
+    let (mesh, attributes) = sound.with_context(|| source.name())?;
     note_what_is_missing(&decoder, args, &source.name(), ui);
-    let (mesh, attributes) = mesh;
     let report = write(&destination, format, &mesh, &attributes)?;
     for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {
         if !names.is_empty() {
@@ -80,16 +80,16 @@ fn sound_mesh(
     name: &str,
     ui: &Ui,
 ) -> Result<(TriMesh, Attributes), DecodeError> {
-    match (error, decoder.to_tri_mesh_with_attributes()) {
-        (Some(error), Some(sound)) if args.salvage => {
+    let Some(error) = error else {
+        note_if_incomplete(decoder, args.bytes, name, ui);
+        return decoder.preview_with_attributes().ok_or(DecodeError::NoMesh);
+    };
+    match decoder.to_tri_mesh_with_attributes().filter(|_| args.salvage) {
+        Some(sound) => {
             ui.warn(name, &format!("{error}; salvaged {}", reached(decoder).unwrap_or_default()));
             Ok(sound)
         }
-        (Some(error), _) => Err(error),
-        (None, _) => {
-            note_if_incomplete(decoder, args.bytes, name, ui);
-            decoder.preview_with_attributes().ok_or(DecodeError::NoMesh)
-        }
+        None => Err(error),
     }
 }
 
@@ -106,29 +106,22 @@ fn write(
     mesh: &TriMesh,
     attributes: &Attributes,
 ) -> anyhow::Result<WriteReport> {
+    let scene = Scene::unpack(mesh, attributes);
+    if let Destination::File(path) = destination {
+        let written = match &scene {
+            Some(scene) => lwc::io::write_scene(path, scene),
+            None => lwc::io::write_with_attributes(path, mesh, attributes),
+        };
+        return written.with_context(|| destination.name());
+    }
     let mut report = WriteReport::default();
-    if let Some(scene) = Scene::unpack(mesh, attributes) {
-        match destination {
-            Destination::File(path) => {
-                report = lwc::io::write_scene(path, &scene).with_context(|| destination.name())?;
-            }
-            Destination::Stdout => destination.write(|out| {
-                report = lwc::io::write_scene_to(out, &scene, format)?;
-                Ok::<(), WriteError>(())
-            })?,
-        }
-        return Ok(report);
-    }
-    match destination {
-        Destination::File(path) => {
-            let written = lwc::io::write_with_attributes(path, mesh, attributes);
-            report = written.with_context(|| destination.name())?;
-        }
-        Destination::Stdout => destination.write(|out| {
-            report = lwc::io::write_with_attributes_to(out, mesh, attributes, format)?;
-            Ok::<(), WriteError>(())
-        })?,
-    }
+    destination.write(|out| {
+        report = match &scene {
+            Some(scene) => lwc::io::write_scene_to(out, scene, format)?,
+            None => lwc::io::write_with_attributes_to(out, mesh, attributes, format)?,
+        };
+        Ok::<(), WriteError>(())
+    })?;
     Ok(report)
 }
 

@@ -161,7 +161,7 @@ fn stars(mesh: &TriMesh, places: &[[u64; 3]]) -> Vec<u64> {
     stars
 }
 
-fn is_usable(&[a, b, c]: &[u32; 3]) -> bool {
+pub fn is_usable(&[a, b, c]: &[u32; 3]) -> bool {
     a != b && b != c && c != a
 }
 

@@ -1,6 +1,6 @@
 //! `lwc encode --verify`: the values of attributes are back, to half a step of their bits.
 
-use super::verify::turned;
+use super::verify::{is_usable, turned};
 use lwc::mesh::{Attribute, Attributes, Domain, Semantic};
 use lwc::{Decoder, EncodeOptions, TriMesh};
 
@@ -34,10 +34,7 @@ pub fn compare(
         .zip(&found.list)
         .map(|(wanted, found)| Pair::new(mesh, wanted, &decoded, found, options))
         .collect::<Result<_, _>>()?;
-    let usable = |t: &usize| {
-        let [a, b, c] = mesh.triangles()[*t];
-        a != b && b != c && c != a
-    };
+    let usable = |t: &usize| is_usable(&mesh.triangles()[*t]);
     let theirs = decoder.mesh().map(|m| m.cells().to_vec()).unwrap_or_default();
     let wanted = places((0..mesh.num_triangles()).filter(usable), mesh.triangles(), cells);
     let got = places(0..decoded.num_triangles(), decoded.triangles(), &theirs);

@@ -4,12 +4,12 @@
 use crate::bitstream::header::Grid;
 use crate::bitstream::range_coder::RangeDecoder;
 use crate::limits::Limits;
-use crate::mesh::{Attributes, Domain, NO_ROW};
+use crate::mesh::{Attributes, Domain, GltfMaterials, NO_ROW, has_three_vertices};
 use crate::passes::glue::{self, GlueModels};
 use crate::passes::loose::{self, Loose};
 use crate::passes::order::{self, Order};
 use crate::passes::{GridMesh, Malformed, exact};
-use crate::{DecodeError, TriMesh};
+use crate::{DecodeError, TriMesh, scene};
 
 /// What the chunks beside the passes tell of the finest mesh, as far as they have come.
 #[derive(Default)]
@@ -45,31 +45,28 @@ impl Joined {
         joined
     }
 
-    /// The triangles of joined vertices that keep three of them.
-    pub(crate) fn triangles<'a>(&'a self, triangles: &'a [[u32; 3]]) -> impl Iterator<Item = [u32; 3]> + 'a {
-        self.faces(triangles).map(|(_, triangle)| triangle)
-    }
-
-    /// As [`Joined::triangles`], each with its place among all.
+    /// The triangles of joined vertices that keep three of them, each with its place among all.
     fn faces<'a>(&'a self, triangles: &'a [[u32; 3]]) -> impl Iterator<Item = (u32, [u32; 3])> + 'a {
         let joined = (0..).zip(triangles.iter().map(|t| t.map(|v| self.place[v as usize])));
-        joined.filter(|&(_, [a, b, c])| a != b && b != c && c != a)
+        joined.filter(|(_, triangle)| has_three_vertices(triangle))
     }
 }
 
 impl Extras {
-    /// Cells at full precision of all vertices: those of the surface, joined, then the loose ones.
-    pub(crate) fn cells(&self, cells: &[[i32; 3]]) -> Vec<[i32; 3]> {
-        let joined = Joined::new(&self.roots, cells.len());
+    pub(crate) fn joined(&self, num_vertices: usize) -> Joined {
+        Joined::new(&self.roots, num_vertices)
+    }
+
+    /// Cells of all vertices, given those of the surface: these joined, then the loose ones.
+    fn cells(&self, joined: &Joined, cells: &[[i32; 3]]) -> Vec<[i32; 3]> {
         let loose = self.loose.iter().flat_map(|loose| &loose.cells);
         joined.first.iter().map(|&v| cells[v as usize]).chain(loose.copied()).collect()
     }
 
-    /// All triangles, of the vertices of [`Extras::cells`]: those of the surface, then the loose ones.
-    pub(crate) fn triangles(&self, num_vertices: usize, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
-        let joined = Joined::new(&self.roots, num_vertices);
+    /// All triangles, given those of the surface: these of joined vertices, then the loose ones.
+    pub(crate) fn triangles(&self, joined: &Joined, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
         let loose = self.loose.iter().flat_map(|loose| &loose.faces);
-        joined.triangles(triangles).chain(loose.copied()).collect()
+        joined.faces(triangles).map(|(_, triangle)| triangle).chain(loose.copied()).collect()
     }
 
     /// The mesh whose surface has these `cells`, of `precision` bits, and `triangles`.
@@ -80,10 +77,13 @@ impl Extras {
         cells: &[[i32; 3]],
         triangles: &[[u32; 3]],
     ) -> TriMesh {
-        let faces = self.triangles(cells.len(), triangles);
+        let joined = self.joined(cells.len());
+        let faces = self.triangles(&joined, triangles);
         let positions = match &self.positions {
             Some(positions) => positions.clone(),
-            None => self.cells(cells).into_iter().map(|cell| grid.position(cell, precision)).collect(),
+            None => {
+                self.cells(&joined, cells).into_iter().map(|cell| grid.position(cell, precision)).collect()
+            }
         };
         match &self.order {
             Some(order) => order.apply(&positions, &faces),
@@ -115,7 +115,7 @@ impl Elements {
 
 impl Extras {
     fn elements(&self, num_vertices: usize, triangles: &[[u32; 3]]) -> Elements {
-        let joined = Joined::new(&self.roots, num_vertices);
+        let joined = self.joined(num_vertices);
         let (num_loose, num_loose_faces) =
             self.loose.as_ref().map_or((0, 0), |loose| (loose.cells.len(), loose.faces.len()));
         let loose = |count| std::iter::repeat_n(None, count);
@@ -186,73 +186,74 @@ const EXACT_PER_VERTEX: u64 = 240;
 const ORDER_PER_VERTEX: u64 = 24;
 const ORDER_PER_FACE: u64 = 48;
 
-/// Joins vertices that have come since the last time. `used`: memory that is taken already.
-pub(super) fn read_glue(
-    extras: &mut Extras,
-    mesh: &GridMesh,
-    payload: &[u8],
-    limits: &Limits,
-    used: u64,
-) -> Result<(), Refused> {
-    let needed = used + GLUE_PER_VERTEX * mesh.positions.len() as u64;
-    Limits::check("memory", needed, limits.max_memory)?;
-    let known = extras.roots.len();
-    let mut coder = RangeDecoder::new(payload);
-    let result = glue::code(&mut coder, &mut extras.glue, mesh, &mut extras.roots, None);
-    if result.is_err() {
-        extras.roots.truncate(known);
+/// A chunk beside the passes, and what it tells of.
+#[derive(Clone, Copy)]
+pub(super) struct Beside<'a> {
+    pub(super) payload: &'a [u8],
+    pub(super) mesh: &'a GridMesh,
+    pub(super) grid: &'a Grid,
+    pub(super) limits: &'a Limits,
+    /// Memory that is taken already.
+    pub(super) used: u64,
+}
+
+impl Beside<'_> {
+    fn check_memory(&self, more: u64) -> Result<(), DecodeError> {
+        Limits::check("memory", self.used + more, self.limits.max_memory)
     }
-    Ok(result?)
 }
 
-/// Takes what lies loose beside the finest surface.
-pub(super) fn read_loose(
-    extras: &mut Extras,
-    mesh: &GridMesh,
-    grid: &Grid,
-    payload: &[u8],
-    limits: &Limits,
-    used: u64,
-) -> Result<(), Refused> {
-    let mut coder = RangeDecoder::new(payload);
-    let counts = loose::code_counts(&mut coder, payload.len(), None)?;
-    let num_joined = Joined::new(&extras.roots, mesh.positions.len()).first.len();
-    Limits::check("vertices", num_joined as u64 + counts[0], u64::from(limits.max_vertices))?;
-    Limits::check("memory", used + LOOSE_EACH * (counts[0] + counts[1]), limits.max_memory)?;
-    extras.loose = Some(loose::code(&mut coder, grid.precision, num_joined, counts, None)?);
-    Ok(())
+impl Extras {
+    /// Joins vertices that have come since the last time.
+    pub(super) fn read_glue(&mut self, chunk: Beside) -> Result<(), Refused> {
+        chunk.check_memory(GLUE_PER_VERTEX * chunk.mesh.positions.len() as u64)?;
+        let known = self.roots.len();
+        let mut coder = RangeDecoder::new(chunk.payload);
+        let result = glue::code(&mut coder, &mut self.glue, chunk.mesh, &mut self.roots, None);
+        if result.is_err() {
+            self.roots.truncate(known);
+        }
+        Ok(result?)
+    }
+
+    /// Takes what lies loose beside the finest surface.
+    pub(super) fn read_loose(&mut self, chunk: Beside) -> Result<(), Refused> {
+        let Beside { payload, mesh, grid, limits, .. } = chunk;
+        let mut coder = RangeDecoder::new(payload);
+        let counts = loose::code_counts(&mut coder, payload.len(), None)?;
+        let num_joined = self.joined(mesh.positions.len()).first.len();
+        Limits::check("vertices", num_joined as u64 + counts[0], u64::from(limits.max_vertices))?;
+        chunk.check_memory(LOOSE_EACH * (counts[0] + counts[1]))?;
+        self.loose = Some(loose::code(&mut coder, grid.precision, num_joined, counts, None)?);
+        Ok(())
+    }
+
+    /// Takes the exact positions.
+    pub(super) fn read_exact(&mut self, chunk: Beside) -> Result<(), Refused> {
+        let Beside { payload, mesh, grid, .. } = chunk;
+        let ladders = exact::read_ladders(payload).ok_or(Malformed("the kinds of exact numbers"))?;
+        let cells = self.cells(&self.joined(mesh.positions.len()), &mesh.positions);
+        chunk.check_memory(EXACT_PER_VERTEX * cells.len() as u64)?;
+        let mut coder = RangeDecoder::new(&payload[exact::LADDER_BYTES..]);
+        self.positions = Some(exact::code(&mut coder, grid, ladders, &cells, None)?);
+        Ok(())
+    }
+
+    /// Takes the order of the file.
+    pub(super) fn read_order(&mut self, chunk: Beside) -> Result<(), Refused> {
+        let mesh = chunk.mesh;
+        let joined = self.joined(mesh.positions.len());
+        let num_vertices = joined.first.len() + self.loose.as_ref().map_or(0, |loose| loose.cells.len());
+        let faces = self.triangles(&joined, &mesh.surface.triangles);
+        chunk.check_memory(ORDER_PER_VERTEX * num_vertices as u64 + ORDER_PER_FACE * faces.len() as u64)?;
+        let mut coder = RangeDecoder::new(chunk.payload);
+        self.order = Some(order::code(&mut coder, num_vertices, &faces, None)?);
+        Ok(())
+    }
 }
 
-/// Takes the exact positions.
-pub(super) fn read_exact(
-    extras: &mut Extras,
-    mesh: &GridMesh,
-    grid: &Grid,
-    payload: &[u8],
-    limits: &Limits,
-    used: u64,
-) -> Result<(), Refused> {
-    let ladders = exact::read_ladders(payload).ok_or(Malformed("the kinds of exact numbers"))?;
-    let cells = extras.cells(&mesh.positions);
-    Limits::check("memory", used + EXACT_PER_VERTEX * cells.len() as u64, limits.max_memory)?;
-    let mut coder = RangeDecoder::new(&payload[exact::LADDER_BYTES..]);
-    extras.positions = Some(exact::code(&mut coder, grid, ladders, &cells, None)?);
-    Ok(())
-}
-
-/// Takes the order of the file.
-pub(super) fn read_order(
-    extras: &mut Extras,
-    mesh: &GridMesh,
-    payload: &[u8],
-    limits: &Limits,
-    used: u64,
-) -> Result<(), Refused> {
-    let num_vertices = extras.cells(&mesh.positions).len();
-    let faces = extras.triangles(mesh.positions.len(), &mesh.surface.triangles);
-    let needed = ORDER_PER_VERTEX * num_vertices as u64 + ORDER_PER_FACE * faces.len() as u64;
-    Limits::check("memory", used + needed, limits.max_memory)?;
-    let mut coder = RangeDecoder::new(payload);
-    extras.order = Some(order::code(&mut coder, num_vertices, &faces, None)?);
-    Ok(())
+/// Takes how materials look, from a chunk before the passes or behind them.
+pub(super) fn read_materials(payload: &[u8], limits: &Limits, used: u64) -> Result<GltfMaterials, Refused> {
+    Limits::check("memory", used + payload.len() as u64, limits.max_memory)?;
+    Ok(scene::read_materials(payload).ok_or(Malformed("materials"))?)
 }

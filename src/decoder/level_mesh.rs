@@ -1,6 +1,6 @@
 //! The mesh a decoder holds, as callers see it.
 
-use super::assemble::{Extras, Joined};
+use super::assemble::Extras;
 use crate::TriMesh;
 use crate::bitstream::header::Grid;
 
@@ -76,7 +76,7 @@ impl<'a> LevelMesh<'a> {
     /// For each vertex of this cut surface the vertex of the joined one, and the number of those: before
     /// loose vertices follow and any order is restored, that of [`to_tri_mesh`](Self::to_tri_mesh).
     pub fn joined_vertices(&self) -> (Vec<u32>, usize) {
-        let joined = Joined::new(&self.extras.roots, self.cells.len());
+        let joined = self.extras.joined(self.cells.len());
         (joined.place, joined.first.len())
     }
 

@@ -1,6 +1,6 @@
 //! The push decoder: bytes in, refined meshes out.
 
-use super::assemble::{self, Extras};
+use super::assemble::{self, Beside, Extras};
 use super::attributes::{self, AttributeDecoder};
 use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
 use super::level_mesh::LevelMesh;
@@ -295,9 +295,9 @@ impl Decoder {
                     self.scene = Some(scene::read(payload).ok_or(malformed("the scene"))?);
                 }
                 (kind::MATERIALS, _) if ASSETS && self.materials.is_none() => {
-                    let needed = payload.len() as u64 + self.frames.buffered() as u64;
-                    Limits::check("memory", needed, self.limits.max_memory)?;
-                    self.materials = Some(scene::read_materials(payload).ok_or(malformed("materials"))?);
+                    let held = self.frames.buffered() as u64;
+                    let materials = assemble::read_materials(payload, &self.limits, held);
+                    self.materials = Some(materials.map_err(|e| e.at(chunk.offset))?);
                 }
                 (kind::SCENE | kind::MATERIALS, _) if ASSETS => return Err(out_of_order(&chunk)),
                 (kind::ANNOUNCED, _) if ASSETS && self.announced.is_none() => {
@@ -410,20 +410,16 @@ impl Decoder {
         if chunk::other_size(payload.len() as u32) != announced {
             return Err(malformed("a chunk differs from its announcement"));
         }
-        let buffered = self.frames.buffered() as u64 + passes::memory_for(pass);
+        let used = self.frames.buffered() as u64 + passes::memory_for(pass);
         let mesh = &self.passes.mesh;
-        let (grid, limits, extras) = (&info.grid, &self.limits, &mut self.extras);
+        let beside = Beside { payload, mesh, grid: &info.grid, limits: &self.limits, used };
         match chunk.kind {
-            kind::GLUE => assemble::read_glue(extras, mesh, payload, limits, buffered),
-            kind::LOOSE => assemble::read_loose(extras, mesh, grid, payload, limits, buffered),
-            kind::EXACT => assemble::read_exact(extras, mesh, grid, payload, limits, buffered),
-            kind::ORDER => assemble::read_order(extras, mesh, payload, limits, buffered),
-            kind::MATERIALS => {
-                let needed = payload.len() as u64 + buffered;
-                Limits::check("memory", needed, limits.max_memory)?;
-                self.materials = Some(scene::read_materials(payload).ok_or(malformed("materials"))?);
-                Ok(())
-            }
+            kind::GLUE => self.extras.read_glue(beside),
+            kind::LOOSE => self.extras.read_loose(beside),
+            kind::EXACT => self.extras.read_exact(beside),
+            kind::ORDER => self.extras.read_order(beside),
+            kind::MATERIALS => assemble::read_materials(payload, &self.limits, used)
+                .map(|materials| self.materials = Some(materials)),
             _ => Ok(()),
         }
         .map_err(|e| e.at(chunk.offset))?;

@@ -4,6 +4,7 @@ use super::lift::vertex_normals;
 use super::tower::{StreamTower, Tower};
 use super::{Decomposition, Prediction};
 use crate::encoder::quantise::unit_near;
+use crate::mesh::has_three_vertices;
 use crate::{DecodeError, Limits, TriMesh};
 use glam::DVec3;
 use thiserror::Error;
@@ -140,7 +141,7 @@ fn join(mesh: &TriMesh, joined: &[u32]) -> TriMesh {
         }
     }
     let triangles = mesh.triangles().iter().map(|t| t.map(|v| joined[v as usize]));
-    TriMesh::from_valid_parts(positions, triangles.filter(|&[a, b, c]| a != b && b != c && c != a).collect())
+    TriMesh::from_valid_parts(positions, triangles.filter(has_three_vertices).collect())
 }
 
 fn sorted(mesh: &TriMesh) -> Vec<[u32; 3]> {

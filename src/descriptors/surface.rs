@@ -6,7 +6,7 @@ use super::adjacency::Adjacency;
 use super::locality::morton_order;
 use super::readings::NormalWeights;
 use super::scale::{exponent, times_power_of_two};
-use crate::mesh::TriMesh;
+use crate::mesh::{TriMesh, has_three_vertices};
 
 /// A sum of vectors counts as zero when it is at most this part of the sum of their lengths.
 const VANISHING: f64 = 1e-12;
@@ -168,7 +168,7 @@ pub(super) fn mean_edge_length(mesh: &TriMesh) -> f64 {
 
 /// The faces that name three different vertices.
 fn proper_triangles(mesh: &TriMesh) -> Vec<[u32; 3]> {
-    mesh.triangles().iter().copied().filter(|[a, b, c]| a != b && b != c && c != a).collect()
+    mesh.triangles().iter().copied().filter(has_three_vertices).collect()
 }
 
 /// Box around the corners of `triangles`, model units; `None` without triangles.

@@ -2,6 +2,7 @@
 
 use super::analysis::Hierarchy;
 use super::attributes::Quantised;
+use super::padded;
 use crate::bitstream::range_coder::RangeEncoder;
 use crate::mesh::{Domain, NO_ROW};
 use crate::passes::GridMesh;
@@ -112,11 +113,10 @@ impl<'a> AttributeWriter<'a> {
             debug_assert_eq!(done, Ok(true));
             num_channels += attribute.declaration.num_channels() as u64;
         }
-        let mut payload = coder.finish();
-        // A decoder refuses more values than the bytes could plausibly hold, and a pass without any.
         let vertices = (mesh.positions.len() - first) as u64;
-        let least = (vertices * num_channels).div_ceil(MAX_VALUES_PER_BYTE).saturating_sub(1).max(1);
-        payload.resize(payload.len().max(least as usize), 0);
+        let mut payload = padded(coder.finish(), vertices * num_channels, MAX_VALUES_PER_BYTE);
+        // No byte at all would mean that nothing comes with the pass.
+        payload.resize(payload.len().max(1), 0);
         self.payloads.push(payload);
     }
 }

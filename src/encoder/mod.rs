@@ -15,8 +15,9 @@ use trailing::Exact;
 pub use options::{EncodeOptions, Encoded, Progress};
 
 use crate::descriptors::{Features, FeaturesError};
-use crate::mesh::Attributes;
 use crate::mesh::repair::{RepairReport, cut};
+use crate::mesh::{Attributes, has_three_vertices};
+use crate::passes::Malformed;
 use crate::{EncodeError, StreamInfo, TriMesh};
 
 /// Encodes a mesh.
@@ -55,21 +56,20 @@ pub fn encode_with_attributes(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Encoded, EncodeError> {
     options.check()?;
-    let is_used = |&t: &[u32; 3]| order::is_usable(&t);
-    let num_usable = mesh.triangles().iter().filter(|t| is_used(t)).count();
+    let usable = || mesh.triangles().iter().filter(|t| has_three_vertices(t));
+    let num_usable = usable().count();
     if num_usable == 0 {
         return Err(EncodeError::NoTriangles);
     }
     if num_usable.max(mesh.num_vertices()) >= (u32::MAX / 4) as usize {
         return Err(EncodeError::TooLarge(num_usable));
     }
-    let corners = mesh.triangles().iter().filter(|t| is_used(t)).flatten();
     let mut loose = trailing::loose_vertices(mesh, options);
-    let points = corners.chain(&loose).map(|&v| mesh.positions()[v as usize]);
+    let points = usable().flatten().chain(&loose).map(|&v| mesh.positions()[v as usize]);
     let grid = quantise::grid_around(points, options.quantization)?;
     trailing::sort_loose(&mut loose, mesh, &grid);
-    let ordered = order::order(mesh, &grid);
-    let (surface, source) = cut(ordered.triangles.clone(), ordered.cells.len());
+    let (ordered, triangles) = order::order(mesh, &grid);
+    let (surface, source) = cut(triangles, ordered.cells.len());
     if surface.corner_of.len() >= (u32::MAX / 4) as usize {
         return Err(EncodeError::TooLarge(surface.corner_of.len()));
     }
@@ -127,4 +127,16 @@ fn features(
     }
     let features = Features::choose(mesh, attributes, &options.descriptor_attributes)?;
     Ok(Some(features.of_vertices(vertices)))
+}
+
+/// A payload with as many zeros behind it as a decoder wants to believe that it holds so many things.
+fn padded(mut payload: Vec<u8>, count: u64, most_per_byte: u64) -> Vec<u8> {
+    let least = count.div_ceil(most_per_byte).saturating_sub(1);
+    payload.resize(payload.len().max(least as usize), 0);
+    payload
+}
+
+/// The codes fail on malformed payloads only, and an encoder reads none.
+fn expect_sound<T>(result: Result<T, Malformed>) -> T {
+    result.unwrap_or_else(|e| unreachable!("the encoder made a stream it refuses: {}", e.0))
 }

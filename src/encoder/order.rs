@@ -3,29 +3,25 @@
 
 use crate::TriMesh;
 use crate::bitstream::header::Grid;
+use crate::mesh::{CornersAt, has_three_vertices};
+use crate::morton::morton;
 use rayon::prelude::*;
 
 /// The usable part of a mesh on the grid, in its own order.
 pub(super) struct Ordered {
     /// Of each vertex that a triangle has: by Morton code, ties by the cells around.
     pub(super) cells: Vec<[i32; 3]>,
-    /// Each from its smallest vertex on, ascending.
-    pub(super) triangles: Vec<[u32; 3]>,
     /// Vertex of the mesh for each vertex.
     pub(super) vertex_source: Vec<u32>,
     /// For each triangle three times that of the mesh, and the place there of its first vertex.
     pub(super) corner_source: Vec<u32>,
 }
 
-/// True for triangles of three different vertices.
-pub(super) fn is_usable(&[a, b, c]: &[u32; 3]) -> bool {
-    a != b && b != c && c != a
-}
-
-/// Puts the usable triangles of `mesh` and their vertices in order. There are fewer than 2³⁰ of them.
-pub(super) fn order(mesh: &TriMesh, grid: &Grid) -> Ordered {
+/// Puts the usable triangles of `mesh` and their vertices in order: triangles from their smallest vertex on,
+/// ascending. There are fewer than 2³⁰ of them.
+pub(super) fn order(mesh: &TriMesh, grid: &Grid) -> (Ordered, Vec<[u32; 3]>) {
     let mut usable: Vec<(u32, [u32; 3])> =
-        (0..).zip(mesh.triangles().iter().copied()).filter(|(_, t)| is_usable(t)).collect();
+        (0..).zip(mesh.triangles().iter().copied()).filter(|(_, t)| has_three_vertices(t)).collect();
     let mut is_used = vec![false; mesh.num_vertices()];
     usable.iter().flat_map(|(_, t)| t).for_each(|&v| is_used[v as usize] = true);
 
@@ -50,37 +46,18 @@ pub(super) fn order(mesh: &TriMesh, grid: &Grid) -> Ordered {
     }
     let mut turned: Vec<([u32; 3], u32)> = usable.par_iter().map(|&(face, t)| turned(t, face)).collect();
     turned.par_sort_unstable();
-    Ordered {
+    let ordered = Ordered {
         cells: vertex_source.iter().map(|&v| grid.cell(mesh.positions()[v as usize])).collect(),
-        triangles: turned.iter().map(|&(t, _)| t).collect(),
         vertex_source,
         corner_source: turned.iter().map(|&(_, corner)| corner).collect(),
-    }
+    };
+    (ordered, turned.into_iter().map(|(t, _)| t).collect())
 }
 
 /// A triangle from its smallest vertex on, and which corner that is.
 fn turned(t: [u32; 3], face: u32) -> ([u32; 3], u32) {
     let first = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
     ([t[first], t[(first + 1) % 3], t[(first + 2) % 3]], 3 * face + first as u32)
-}
-
-/// The bits of the three coordinates (each below 2³⁰) in turn, x highest.
-pub(super) fn morton(cell: [i32; 3]) -> u128 {
-    let [x, y, z] = cell.map(|c| spread(c as u32));
-    x << 2 | y << 1 | z
-}
-
-/// Two zeros in front of each of 30 bits.
-fn spread(c: u32) -> u128 {
-    let half = |bits: u32| {
-        let mut x = u64::from(bits);
-        x = (x | x << 32) & 0x001f_0000_0000_ffff;
-        x = (x | x << 16) & 0x001f_0000_ff00_00ff;
-        x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-        x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-        (x | x << 2) & 0x1249_2492_4924_9249
-    };
-    u128::from(half(c >> 15)) << 45 | u128::from(half(c & 0x7fff))
 }
 
 /// Vertices of equal cells, told apart by what is around them.
@@ -243,31 +220,6 @@ impl<'a> Ties<'a> {
     }
 }
 
-/// Corners at each vertex.
-struct CornersAt {
-    first: Vec<u32>,
-    corners: Vec<u32>,
-}
-
-impl CornersAt {
-    fn new(triangles: &[[u32; 3]], num_vertices: usize) -> Self {
-        let mut first = vec![0_u32; num_vertices + 1];
-        triangles.as_flattened().iter().for_each(|&v| first[v as usize + 1] += 1);
-        (0..num_vertices).for_each(|v| first[v + 1] += first[v]);
-        let mut end = first.clone();
-        let mut corners = vec![0_u32; 3 * triangles.len()];
-        for (corner, &v) in triangles.as_flattened().iter().enumerate() {
-            corners[end[v as usize] as usize] = corner as u32;
-            end[v as usize] += 1;
-        }
-        Self { first, corners }
-    }
-
-    fn at(&self, v: u32) -> &[u32] {
-        &self.corners[self.first[v as usize] as usize..self.first[v as usize + 1] as usize]
-    }
-}
-
 /// Scatters the bits of a number (the finaliser of SplitMix64).
 fn mix(x: u64) -> u64 {
     let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -280,30 +232,17 @@ fn mix(x: u64) -> u64 {
 mod tests {
     use super::*;
 
-    #[test]
-    fn codes_interleave_all_bits() {
-        let slow = |cell: [i32; 3]| {
-            (0..30)
-                .rev()
-                .flat_map(|bit| cell.map(|c| c >> bit & 1))
-                .fold(0_u128, |code, b| code << 1 | b as u128)
-        };
-        for cell in [[0, 0, 0], [1, 2, 4], [0x3fff_ffff; 3], [0x1234_5678, 0x0fed_cba9, 0x2aaa_5555]] {
-            assert_eq!(morton(cell), slow(cell), "{cell:?}");
-        }
-    }
-
     /// Triangles in cells of each vertex and the order of equal cells: what the bytes depend on.
     fn ordered(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> (Vec<[i32; 3]>, Vec<[u32; 3]>) {
         let mesh = TriMesh::new(positions.to_vec(), triangles.to_vec()).unwrap();
         let grid = Grid { precision: 4, origin: [0.0; 3], side: 15.0 };
-        let ordered = order(&mesh, &grid);
-        for (t, &corner) in ordered.triangles.iter().zip(&ordered.corner_source) {
+        let (ordered, triangles) = order(&mesh, &grid);
+        for (t, &corner) in triangles.iter().zip(&ordered.corner_source) {
             let source = mesh.triangles()[(corner / 3) as usize];
             let turned = [0, 1, 2].map(|i| source[(corner as usize + i) % 3]);
             assert_eq!(t.map(|v| ordered.vertex_source[v as usize]), turned);
         }
-        (ordered.cells, ordered.triangles)
+        (ordered.cells, triangles)
     }
 
     #[test]

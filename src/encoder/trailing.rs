@@ -1,16 +1,19 @@
 //! What follows the last pass: everything of the mesh that the surface on the grid does not tell.
 
 use super::options::EncodeOptions;
-use super::order::{Ordered, is_usable, morton};
+use super::order::Ordered;
+use super::{expect_sound, padded};
 use crate::TriMesh;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::{Grid, MAX_VERTICES_PER_BYTE};
 use crate::bitstream::range_coder::RangeEncoder;
-use crate::decoder::assemble::{Extras, Joined};
+use crate::decoder::assemble::Extras;
+use crate::mesh::has_three_vertices;
+use crate::morton::morton;
+use crate::passes::GridMesh;
 use crate::passes::exact::{self, Ladder, Scale};
 use crate::passes::loose::{self, Loose};
 use crate::passes::order::{self, Order};
-use crate::passes::{GridMesh, Malformed};
 use bitvec::vec::BitVec;
 
 /// Glued vertices are never removed unless they are a larger share of all: the base would be too large.
@@ -34,8 +37,8 @@ pub(super) fn loose_vertices(mesh: &TriMesh, options: &EncodeOptions) -> Vec<u32
     let mut is_used: BitVec = BitVec::repeat(false, mesh.num_vertices());
     let mut is_named: BitVec = BitVec::repeat(options.keep_isolated, mesh.num_vertices());
     for triangle in mesh.triangles() {
-        let set = if is_usable(triangle) { &mut is_used } else { &mut is_named };
-        if is_usable(triangle) || options.keep_degenerate {
+        let set = if has_three_vertices(triangle) { &mut is_used } else { &mut is_named };
+        if has_three_vertices(triangle) || options.keep_degenerate {
             triangle.iter().for_each(|&v| set.set(v as usize, true));
         }
     }
@@ -74,7 +77,7 @@ impl Exact<'_> {
     /// Kinds and payloads of the chunks. `roots`: the glue of the surface.
     pub(super) fn trailing(&self, surface: &Written, roots: Vec<u32>) -> Vec<(u8, Vec<u8>)> {
         let mut extras = Extras { roots, ..Extras::default() };
-        let joined = Joined::new(&extras.roots, surface.vertex_source.len());
+        let joined = extras.joined(surface.vertex_source.len());
         // Vertex of the mesh for each vertex of the joined one.
         let on_surface = joined.first.iter().map(|&v| {
             let cut = surface.vertex_source[v as usize];
@@ -93,7 +96,7 @@ impl Exact<'_> {
             chunks.push((kind::EXACT, self.write_positions(&vertices)));
         }
         if self.options.keep_order {
-            let faces = extras.triangles(surface.vertex_source.len(), &surface.mesh.surface.triangles);
+            let faces = extras.triangles(&joined, &surface.mesh.surface.triangles);
             let on_surface = surface.face_source.iter().map(|&f| self.ordered.corner_source[f as usize] / 3);
             let face_source: Vec<u32> = on_surface.chain(loose_faces).collect();
             debug_assert_eq!(faces.len(), face_source.len());
@@ -110,7 +113,7 @@ impl Exact<'_> {
         }
         let mut place = vec![0_u32; self.mesh.num_vertices()];
         vertices.iter().zip(0..).for_each(|(&v, i)| place[v as usize] = i);
-        let triangles = (0..).zip(self.mesh.triangles()).filter(|(_, t)| !is_usable(t));
+        let triangles = (0..).zip(self.mesh.triangles()).filter(|(_, t)| !has_three_vertices(t));
         let turned = |(face, t): (u32, &[u32; 3])| {
             let [a, b, c] = t.map(|v| place[v as usize]);
             ([a, b, c].min([b, c, a]).min([c, a, b]), face)
@@ -125,12 +128,7 @@ impl Exact<'_> {
         let mut coder = RangeEncoder::new();
         let counts = expect_sound(loose::code_counts(&mut coder, 0, Some(loose)));
         expect_sound(loose::code(&mut coder, self.grid.precision, num_joined, counts, Some(loose)));
-        let mut payload = coder.finish();
-        // A decoder refuses more than the bytes could plausibly hold.
-        let most = u64::from(MAX_VERTICES_PER_BYTE);
-        let least = (counts[0] + counts[1]).div_ceil(most).saturating_sub(1);
-        payload.resize(payload.len().max(least as usize), 0);
-        payload
+        padded(coder.finish(), counts[0] + counts[1], u64::from(MAX_VERTICES_PER_BYTE))
     }
 
     fn write_positions(&self, vertices: &[u32]) -> Vec<u8> {
@@ -200,9 +198,4 @@ impl Exact<'_> {
         expect_sound(order::code(&mut coder, vertices.len(), faces, Some(&order)));
         coder.finish()
     }
-}
-
-/// The codes fail on malformed payloads only, and an encoder reads none.
-fn expect_sound<T>(result: Result<T, Malformed>) -> T {
-    result.unwrap_or_else(|e| unreachable!("the encoder made a chunk it refuses: {}", e.0))
 }

@@ -6,6 +6,7 @@ use super::attributes::Quantised;
 use super::options::Progress;
 use super::schedule::{Schedule, Step};
 use super::trailing::{Exact, Written};
+use super::{expect_sound, padded};
 use crate::Profile;
 use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
@@ -216,10 +217,8 @@ impl<'a> PassWriter<'a> {
         writer
     }
 
-    fn finish_pass(&mut self, mut row: Pass, touched: usize, mut payload: Vec<u8>) {
-        // A decoder refuses more vertices than the bytes could plausibly hold.
-        let least = touched.div_ceil(MAX_VERTICES_PER_BYTE as usize).saturating_sub(1);
-        payload.resize(payload.len().max(least), 0);
+    fn finish_pass(&mut self, mut row: Pass, touched: usize, payload: Vec<u8>) {
+        let payload = padded(payload, touched as u64, u64::from(MAX_VERTICES_PER_BYTE));
         row.bytes = payload.len() as u32;
         let glue = self.glue_of_new_vertices();
         self.passes.push(WrittenPass { row, payload, glue });
@@ -375,9 +374,4 @@ fn name_faces(
         face_source[face as usize] = removed.faces[(shift + i) % removed.faces.len()];
     }
     shift
-}
-
-/// The passes fail on malformed payloads only, and an encoder reads none.
-fn expect_sound<T>(result: Result<T, crate::passes::Malformed>) -> T {
-    result.unwrap_or_else(|e| unreachable!("the encoder made a stream it refuses: {}", e.0))
 }

@@ -1,6 +1,8 @@
 //! From triangles to a [`Surface`]: adjacency by sorting, and the checks that make it one.
 
+use super::corners_at::CornersAt;
 use super::surface::{NO_CORNER, Surface, next, prev};
+use super::tri_mesh::has_three_vertices;
 use thiserror::Error;
 
 /// Why triangles are not an oriented surface.
@@ -29,10 +31,8 @@ impl Surface {
             valence: vec![0; num_vertices],
             triangles,
         };
-        for (f, &[a, b, c]) in surface.triangles.iter().enumerate() {
-            if a == b || b == c || c == a {
-                return Err(SurfaceError::Degenerate(f as u32));
-            }
+        if let Some(f) = surface.triangles.iter().position(|t| !has_three_vertices(t)) {
+            return Err(SurfaceError::Degenerate(f as u32));
         }
         surface.link_all()?;
         surface.count_fans()?;
@@ -77,40 +77,24 @@ impl Surface {
     }
 }
 
-/// Corners sorted by the directed edge they face.
-pub(crate) struct EdgeIndex {
-    offsets: Vec<u32>,
-    corners: Vec<u32>,
-}
+/// Corners sorted by the directed edge they face: of each vertex those that face edges from it.
+pub(crate) struct EdgeIndex(CornersAt);
 
 impl EdgeIndex {
     pub(crate) fn new(triangles: &[[u32; 3]], num_vertices: usize) -> Self {
-        let mut offsets = vec![0_u32; num_vertices + 1];
-        for &v in triangles.iter().flatten() {
-            offsets[v as usize + 1] += 1;
+        let mut from = CornersAt::new(triangles, num_vertices);
+        for v in 0..num_vertices as u32 {
+            let corners = from.at_mut(v);
+            corners.iter_mut().for_each(|c| *c = prev(*c));
+            corners.sort_unstable_by_key(|&c| (vertex_at(triangles, prev(c)), c));
         }
-        for v in 0..num_vertices {
-            offsets[v + 1] += offsets[v];
-        }
-        let mut fill = offsets.clone();
-        let mut corners = vec![0; 3 * triangles.len()];
-        for corner in 0..3 * triangles.len() as u32 {
-            let from = vertex_at(triangles, next(corner)) as usize;
-            corners[fill[from] as usize] = corner;
-            fill[from] += 1;
-        }
-        for v in 0..num_vertices {
-            corners[offsets[v] as usize..offsets[v + 1] as usize]
-                .sort_unstable_by_key(|&c| (vertex_at(triangles, prev(c)), c));
-        }
-        Self { offsets, corners }
+        Self(from)
     }
 
     /// The corners that face an edge from `from` to `to`, in ascending order. `triangles` are those
     /// the index was made of.
     pub(crate) fn facing(&self, triangles: &[[u32; 3]], from: u32, to: u32) -> &[u32] {
-        let v = from as usize;
-        let group = &self.corners[self.offsets[v] as usize..self.offsets[v + 1] as usize];
+        let group = self.0.at(from);
         let start = group.partition_point(|&c| vertex_at(triangles, prev(c)) < to);
         let end = start + group[start..].partition_point(|&c| vertex_at(triangles, prev(c)) == to);
         &group[start..end]

@@ -2,6 +2,7 @@
 
 mod attribute;
 mod build;
+mod corners_at;
 pub(crate) mod ears;
 #[cfg(feature = "encoder")]
 pub(crate) mod repair;
@@ -15,6 +16,8 @@ pub use attribute::{
     Attribute, AttributeError, Attributes, Domain, GltfMaterials, MAX_COMPONENTS, NO_ROW, ScalarType,
     Semantic, Values,
 };
+pub(crate) use corners_at::CornersAt;
 pub use scene::{IDENTITY, Instance, SceneTable};
 pub(crate) use surface::Surface;
+pub(crate) use tri_mesh::has_three_vertices;
 pub use tri_mesh::{MeshError, TriMesh};

@@ -3,7 +3,7 @@
 
 use super::build::EdgeIndex;
 use super::surface::{NO_CORNER, Surface, next, prev};
-use super::tri_mesh::TriMesh;
+use super::tri_mesh::{TriMesh, has_three_vertices};
 
 /// What had to be changed so that a mesh became an oriented surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,8 +29,8 @@ pub(crate) struct Repaired {
 
 /// Cuts `mesh` into sheets. Faces keep their order and their orientation.
 pub(crate) fn repair(mesh: &TriMesh) -> Repaired {
-    let is_usable = |t: &&[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-    let triangles: Vec<[u32; 3]> = mesh.triangles().iter().filter(is_usable).copied().collect();
+    let triangles: Vec<[u32; 3]> =
+        mesh.triangles().iter().filter(|t| has_three_vertices(t)).copied().collect();
     let degenerate_faces = mesh.num_triangles() - triangles.len();
 
     let (surface, source) = cut(triangles, mesh.num_vertices());
@@ -161,7 +161,7 @@ mod tests {
         let repaired = repair(&mesh);
         // The same oriented faces come out, in order, whatever was cut.
         let back = repaired.surface.triangles.iter().map(|t| t.map(|v| repaired.source[v as usize]));
-        let kept = mesh.triangles().iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+        let kept = mesh.triangles().iter().filter(|t| has_three_vertices(t));
         assert!(back.eq(kept.copied()));
         assert!(repaired.source.is_sorted());
         repaired.report

@@ -103,3 +103,7 @@ impl TriMesh {
         }))
     }
 }
+/// Whether a triangle names three different vertices.
+pub(crate) fn has_three_vertices(&[a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}

@@ -5,6 +5,7 @@ use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::TriMesh;
 use crate::bitstream::range_coder::BitCoder;
+use crate::mesh::CornersAt;
 
 /// Where the vertices and triangles of a mesh stand in the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -43,7 +44,7 @@ pub(crate) fn code<B: BitCoder>(
     faces: &[[u32; 3]],
     target: Option<&Order>,
 ) -> Result<Order, Malformed> {
-    let at = FacesAt::new(faces, num_vertices);
+    let at = CornersAt::new(faces, num_vertices);
     let vertices = code_vertices(coder, num_vertices, faces, &at, target.map(|t| &t.vertices[..]))?;
     let corners = code_corners(coder, &vertices, faces, &at, target.map(|t| &t.corners[..]))?;
     Ok(Order { vertices, corners })
@@ -53,7 +54,7 @@ fn code_vertices<B: BitCoder>(
     coder: &mut B,
     num_vertices: usize,
     faces: &[[u32; 3]],
-    at: &FacesAt,
+    at: &CornersAt,
     target: Option<&[u32]>,
 ) -> Result<Vec<u32>, Malformed> {
     let mut picker = Picker::new(num_vertices);
@@ -61,8 +62,8 @@ fn code_vertices<B: BitCoder>(
         picker.candidates.clear();
         for back in 1..=DEPTH.min(place) {
             let v = picker.order[place - back];
-            for &f in at.of(v).iter().take(MOST_CANDIDATES) {
-                let face = faces[f as usize];
+            for &c in at.at(v).iter().take(MOST_CANDIDATES) {
+                let face = faces[(c / 3) as usize];
                 let i = face.iter().position(|&u| u == v).unwrap_or(0);
                 picker.consider(face[(i + 1) % 3]);
                 picker.consider(face[(i + 2) % 3]);
@@ -77,7 +78,7 @@ fn code_corners<B: BitCoder>(
     coder: &mut B,
     vertices: &[u32],
     faces: &[[u32; 3]],
-    at: &FacesAt,
+    at: &CornersAt,
     target: Option<&[u32]>,
 ) -> Result<Vec<u32>, Malformed> {
     let mut place = vec![0_u32; vertices.len()];
@@ -94,15 +95,16 @@ fn code_corners<B: BitCoder>(
             // The newest vertices first: strips and fans go on there.
             for k in [2, 1, 0] {
                 let v = face[((corner + k) % 3) as usize];
-                at.of(v).iter().take(MOST_CANDIDATES).for_each(|&f| picker.consider(f));
+                at.at(v).iter().take(MOST_CANDIDATES).for_each(|&c| picker.consider(c / 3));
             }
         }
         // Files that go by their vertices return to the first one that is not done.
         while let Some(&v) = vertices.get(lowest) {
-            let rest = &at.of(v)[done_there..];
-            done_there += rest.iter().take_while(|&&f| picker.is_done[f as usize]).count();
-            if done_there < at.of(v).len() {
-                at.of(v)[done_there..].iter().take(MOST_CANDIDATES).for_each(|&f| picker.consider(f));
+            let rest = &at.at(v)[done_there..];
+            let num_done = rest.iter().take_while(|&&c| picker.is_done[(c / 3) as usize]).count();
+            done_there += num_done;
+            if num_done < rest.len() {
+                rest[num_done..].iter().take(MOST_CANDIDATES).for_each(|&c| picker.consider(c / 3));
                 break;
             }
             (lowest, done_there) = (lowest + 1, 0);
@@ -177,30 +179,5 @@ impl Picker {
         self.last = i64::from(next);
         self.order.push(next);
         Ok(next)
-    }
-}
-
-/// Triangles at each vertex, ascending.
-struct FacesAt {
-    first: Vec<u32>,
-    faces: Vec<u32>,
-}
-
-impl FacesAt {
-    fn new(faces: &[[u32; 3]], num_vertices: usize) -> Self {
-        let mut first = vec![0_u32; num_vertices + 1];
-        faces.as_flattened().iter().for_each(|&v| first[v as usize + 1] += 1);
-        (0..num_vertices).for_each(|v| first[v + 1] += first[v]);
-        let mut end = first.clone();
-        let mut list = vec![0_u32; 3 * faces.len()];
-        for (corner, &v) in faces.as_flattened().iter().enumerate() {
-            list[end[v as usize] as usize] = (corner / 3) as u32;
-            end[v as usize] += 1;
-        }
-        Self { first, faces: list }
-    }
-
-    fn of(&self, v: u32) -> &[u32] {
-        &self.faces[self.first[v as usize] as usize..self.first[v as usize + 1] as usize]
     }
 }

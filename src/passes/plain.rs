@@ -1,4 +1,4 @@
-//! Coordinates of the profile *fast* (`format/SPEC.md`, section 7.6): one fixed linear prediction from
+//! Coordinates of the profile *fast* (`format/SPEC.md`, section 7.10): one fixed linear prediction from
 //! ring and coarse tips, differences as symbols.
 
 use super::Malformed;

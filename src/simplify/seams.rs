@@ -160,12 +160,15 @@ impl Seams {
         if places.count_ones() == 2 && star.is_closed() && to - from > 1 && from + degree - to > 1 {
             return Demand::Diagonal(Diagonal::new([from, to], degree));
         }
-        self.demand_less(star)
+        self.demand_at(places, degree)
     }
 
     /// What they are content with if there is no such hole.
     pub(crate) fn demand_less(&self, star: &Star) -> Demand {
-        let (places, degree) = (self.spokes(star), star.degree());
+        self.demand_at(self.spokes(star), star.degree())
+    }
+
+    fn demand_at(&self, places: u64, degree: usize) -> Demand {
         let demand = Demand::Uncut { places, degree };
         // Each hole has two triangles that cut a corner off, which are not next to each other.
         let is_free = |i: usize| places >> i & 1 == 0;
@@ -173,9 +176,8 @@ impl Seams {
             && (0..degree).any(|i| is_free(i) && (i + 2..degree).any(|j| is_free(j) && j + 1 < i + degree));
         match self.grip {
             Grip::Firm => Demand::Stay,
-            Grip::Loose if can_be => demand,
+            _ if can_be => demand,
             Grip::Loose => Demand::Stay,
-            Grip::None if can_be => demand,
             Grip::None => Demand::None,
         }
     }

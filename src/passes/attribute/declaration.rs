@@ -1,4 +1,4 @@
-//! What a stream says of its attributes before it has any values (`format/SPEC.md`, section 4.4).
+//! What a stream says of its attributes before it has any values (`format/SPEC.md`, section 4.5).
 
 use super::octahedron::Octahedron;
 use crate::bitstream::bytes::Reader;

@@ -1,4 +1,4 @@
-//! One attribute on the present mesh, and what a pass brings of it (`format/SPEC.md`, section 7.6).
+//! One attribute on the present mesh, and what a pass brings of it (`format/SPEC.md`, section 7.11).
 
 use super::around::{Around, Known};
 use super::declaration::{Coding, Declaration};

@@ -1,5 +1,5 @@
-//! Attributes: what a stream declares, and the values that follow each pass (`format/SPEC.md`, sections 4.4,
-//! 7.6 and 8.4).
+//! Attributes: what a stream declares, and the values that follow each pass (`format/SPEC.md`, sections 4.5,
+//! 7.11 and 8.4).
 //!
 //! A [`Layer`] holds the rows of one attribute and which of them every vertex, corner or face of the present mesh
 //! has. The corners at a vertex that share a row are a *wedge*; where the row changes, a seam runs.
