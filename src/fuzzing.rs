@@ -512,7 +512,7 @@ fn made_up(data: &[u8]) -> Vec<u8> {
         piece
     };
     let glue = piece();
-    let trailing = [kind::LOOSE, kind::EXACT, kind::ORDER].map(|kind| (kind, piece()));
+    let trailing = [kind::LOOSE, kind::EXACT, kind::VALUES, kind::ORDER].map(|kind| (kind, piece()));
     let announced = Announced {
         glue: if glue.is_empty() { Vec::new() } else { vec![(0, glue.len() as u32)] },
         trailing: trailing.map(|(kind, payload)| (kind, payload.len() as u32)).to_vec(),

@@ -1,4 +1,4 @@
-//! Chunks beside the passes (`format/SPEC.md`, sections 4.4 and 7.6 to 7.9) that are damaged, hostile or missing.
+//! Chunks beside the passes (`format/SPEC.md`, sections 4.4, 7.6 to 7.9 and 7.12) that are damaged, hostile or missing.
 #![cfg(feature = "encoder")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -6,7 +6,11 @@ mod common;
 
 use common::chunks::{self, Chunk, take_varint, varint};
 use common::*;
-use lwc::{DecodeError, DecodeOptions, Decoder, EncodeOptions, Limits, TriMesh, decode, encode};
+use lwc::mesh::{Attribute, Attributes, Domain, Semantic, Values};
+use lwc::{
+    DecodeError, DecodeOptions, Decoder, EncodeOptions, Limits, TriMesh, decode, encode,
+    encode_with_attributes,
+};
 
 /// A mesh of everything: cut, loose, with strange floats.
 fn mesh() -> TriMesh {
@@ -17,13 +21,34 @@ fn mesh() -> TriMesh {
     build(positions, triangles)
 }
 
+/// Numbers that no bits tell, on all of it.
+fn attributes(mesh: &TriMesh) -> Attributes {
+    let mut random = Random(5);
+    let mut of = |domain: Domain, num_components: usize| {
+        let count = domain.num_elements(mesh) * num_components;
+        let values = Values::F32((0..count).map(|_| random.unit() as f32).collect());
+        Attribute::new("q", Semantic::Generic, domain, num_components, values)
+    };
+    let mut normals = of(Domain::Vertex, 3);
+    normals.semantic = Semantic::Normal;
+    let Values::F32(values) = &mut normals.values else { unreachable!() };
+    for n in values.chunks_exact_mut(3) {
+        let length = n.iter().map(|x| x * x).sum::<f32>().sqrt();
+        n.iter_mut().for_each(|x| *x /= length);
+    }
+    let mut attributes = Attributes::default();
+    attributes.list = vec![of(Domain::Corner, 2), of(Domain::Face, 1), normals];
+    attributes
+}
+
 fn stream() -> Vec<u8> {
     let mut options = EncodeOptions::default();
     options.keep_isolated = true;
     options.keep_degenerate = true;
     options.lossless = true;
     options.keep_order = true;
-    encode(&mesh(), &options).unwrap().bytes
+    let mesh = mesh();
+    encode_with_attributes(&mesh, &attributes(&mesh), &options, &|_| {}).unwrap().bytes
 }
 
 /// The stream with the lengths that `t` gives made those of the chunks that are there.
@@ -52,7 +77,7 @@ fn join_announced(chunks: &[Chunk]) -> Vec<u8> {
 }
 
 fn is_beside(chunk: &Chunk) -> bool {
-    b"gixo".contains(&chunk.kind)
+    b"gixvo".contains(&chunk.kind)
 }
 
 /// Decodes; whatever comes of it, the meshes are sound and the passes those of the clean stream.
@@ -66,6 +91,9 @@ fn check(stream: &[u8], what: &str) -> Result<bool, DecodeError> {
         let (place, count) = mesh.joined_vertices();
         assert!(place.len() == mesh.num_vertices() && place.iter().all(|&v| (v as usize) < count), "{what}");
     }
+    if let Some((mesh, attributes)) = decoder.to_tri_mesh_with_attributes() {
+        attributes.list.iter().for_each(|a| assert_eq!(a.validate(&mesh), Ok(()), "{what}"));
+    }
     if result.is_err() {
         assert_eq!(decoder.push(&[0]), Err(DecodeError::Failed), "{what}");
     }
@@ -75,7 +103,7 @@ fn check(stream: &[u8], what: &str) -> Result<bool, DecodeError> {
 #[test]
 fn the_stream_of_these_tests_has_all_chunks() {
     let kinds: Vec<u8> = chunks::split(&stream()).iter().map(|c| c.kind).collect();
-    assert!(b"tgixo".iter().all(|kind| kinds.contains(kind)), "{kinds:?}");
+    assert!(b"tgixvo".iter().all(|kind| kinds.contains(kind)), "{kinds:?}");
     assert_eq!(check(&stream(), "clean"), Ok(true));
     assert_eq!(join_announced(&chunks::split(&stream())), stream());
 }
@@ -165,7 +193,7 @@ fn who_does_not_know_them_has_the_cut_surface() {
     let stream = stream();
     let known = decode(&stream, DecodeOptions::new()).unwrap();
     let bare: Vec<Chunk> =
-        chunks::split(&stream).into_iter().filter(|c| !b"tgixo".contains(&c.kind)).collect();
+        chunks::split(&stream).into_iter().filter(|c| !b"tgixvo".contains(&c.kind)).collect();
     let mut decoder = Decoder::new(Limits::default());
     decoder.push(&chunks::join(&bare)).unwrap();
     let cut = decoder.mesh().unwrap();

@@ -339,16 +339,25 @@ fn what_a_stream_does_not_keep_is_told() {
 }
 
 #[test]
-fn what_lossless_does_not_cover_is_said() {
+fn lossless_keeps_attributes_and_descriptors_say_what_they_know() {
     let workshop = Workshop::new();
     let shaded = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
         property float heat\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
-        0 0 0 0.1\n1 0 0 0.2\n0 1 0 0.3\n3 0 1 2\n";
+        0 0 0 0.1\n1 0 0 nan\n0 1 0 0.30000001\n3 0 1 2\n";
     fs::write(workshop.path("shaded.ply"), shaded).unwrap();
-    let (_, stderr) = workshop.ok("encode shaded.ply --lossless --keep-isolated");
-    assert!(stderr.contains("--lossless is for positions; quantised: heat"), "{stderr}");
-    assert!(stderr.contains("kept without attributes"), "{stderr}");
-    assert!(!workshop.ok("encode shaded.ply").1.contains("quantised"));
+    assert!(workshop.ok("encode shaded.ply").1.contains("1 value of attributes left out: not finite"));
+    let (_, stderr) = workshop.ok("encode shaded.ply --lossless --keep-order --verify");
+    assert!(!stderr.contains("not finite"), "{stderr}");
+    assert!(workshop.ok("info shaded.lwc").0.contains("values"));
+    workshop.ok("decode shaded.lwc -o back.ply");
+    let back = fs::read(workshop.path("back.ply")).unwrap();
+    let found: Vec<f32> = (0..3)
+        .map(|v| {
+            let at = back.windows(11).position(|w| w == b"end_header\n").unwrap() + 11 + 16 * v + 12;
+            f32::from_le_bytes(back[at..at + 4].try_into().unwrap())
+        })
+        .collect();
+    assert!(found[0] == 0.1 && found[1].is_nan() && found[2] == 0.300_000_01, "{found:?}");
 
     // And descriptors say which of them know attributes.
     workshop.ok("encode shaded.ply -d pca-qem --descriptor-attributes heat:5");

@@ -133,7 +133,7 @@ pub struct Encode {
     /// Keep positions and triangles only.
     #[arg(long)]
     pub no_attributes: bool,
-    /// Keep every coordinate bit for bit, float or double, behind the last pass. Attributes keep to their bits.
+    /// Keep every number of positions and attributes bit for bit, floats, doubles or integers, behind the last pass.
     #[arg(long)]
     pub lossless: bool,
     /// Keep vertices without faces. They are dropped and counted without it.

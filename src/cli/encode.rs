@@ -8,7 +8,6 @@ use super::ui::Ui;
 use super::{passes, verify};
 use anyhow::Context;
 use lwc::io::MeshFile;
-use lwc::mesh::Attribute;
 use lwc::{EncodeOptions, Encoded, RepairReport};
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -63,7 +62,6 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let (encoded, options) = encode(&file, args, ui).with_context(|| name.clone())?;
     let encode_seconds = start.elapsed().as_secs_f64();
     warn_about(&name, &encoded, ui);
-    warn_about_attributes(&name, &file, args, ui);
 
     if args.verify {
         let start = Instant::now();
@@ -113,19 +111,6 @@ fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
     let attributes = std::mem::take(&mut file.attributes);
     let names = attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
     names.chain(attributes.material_libraries.first().map(|_| "mtllib".to_owned())).collect()
-}
-
-/// Tells what `--lossless`, `--keep-isolated` and `--keep-degenerate` do not do for attributes.
-fn warn_about_attributes(name: &str, file: &MeshFile, args: &Encode, ui: &Ui) {
-    let is_float = |a: &&Attribute| a.values.scalar_type().is_some_and(|scalar| !scalar.is_integer());
-    let floats = file.attributes.list.iter().filter(is_float);
-    let floats: Vec<String> = floats.map(|attribute| attribute.name.replace(' ', "/")).collect();
-    if args.lossless && !floats.is_empty() {
-        ui.warn(name, &format!("--lossless is for positions; quantised: {}", floats.join(", ")));
-    }
-    if (args.keep_isolated || args.keep_degenerate) && !file.attributes.list.is_empty() {
-        ui.note(name, "vertices without faces and degenerate faces are kept without attributes");
-    }
 }
 
 fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {

@@ -20,4 +20,5 @@ pub mod render;
 pub mod ui;
 mod verify;
 mod verify_attributes;
+mod verify_exact;
 pub mod view;

@@ -3,7 +3,7 @@
 //! Grid and comparison are written a second time here, so that encoder and decoder cannot agree on a mistake.
 
 use super::exit::Failure;
-use super::verify_attributes;
+use super::{verify_attributes, verify_exact};
 use lwc::mesh::Attributes;
 use lwc::{Decoder, EncodeOptions, Encoded, Limits, TriMesh};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -27,10 +27,14 @@ pub fn verify(
         let decoder = decode(encoded)?;
         let expected = Quantised::new(mesh, options, encoded.info.side());
         compare_surface(&expected, options.quantization, encoded, &decoder)?;
-        let decoded = decoder.mesh().ok_or("there is no mesh")?.to_tri_mesh();
+        let (decoded, found) = decoder.to_tri_mesh_with_attributes().ok_or("there is no mesh")?;
         compare_whole(&kept(mesh, options), &decoded, &expected, options)?;
         let cells: Vec<Cell> = mesh.positions().iter().map(|&p| expected.cell(p)).collect();
-        verify_attributes::compare(mesh, attributes, &cells, options, &decoder)
+        verify_attributes::compare(mesh, attributes, &cells, options, &decoder)?;
+        match options.lossless {
+            true => verify_exact::compare((mesh, attributes), (&decoded, &found), options),
+            false => Ok(()),
+        }
     };
     check().map_err(Failure::Verification)
 }
@@ -221,7 +225,7 @@ impl Quantised {
 }
 
 /// The same triangle from its smallest corner on.
-pub fn turned([a, b, c]: [Cell; 3]) -> [Cell; 3] {
+pub fn turned<T: Copy + Ord>([a, b, c]: [T; 3]) -> [T; 3] {
     [a, b, c].min([b, c, a]).min([c, a, b])
 }
 

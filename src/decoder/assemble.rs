@@ -1,13 +1,16 @@
 //! From the surface that passes refine to the mesh that was encoded: vertices joined where it was cut, what
 //! lies loose beside it, exact floats, the order of the file (`format/SPEC.md`, section 9).
 
+use super::attributes::AttributeDecoder;
 use crate::bitstream::header::Grid;
 use crate::bitstream::range_coder::RangeDecoder;
 use crate::limits::Limits;
-use crate::mesh::{Attributes, Domain, GltfMaterials, NO_ROW, has_three_vertices};
+use crate::mesh::{Attribute, Attributes, Domain, GltfMaterials, NO_ROW, has_three_vertices};
+use crate::passes::attribute::Rows;
 use crate::passes::glue::{self, GlueModels};
 use crate::passes::loose::{self, Loose};
 use crate::passes::order::{self, Order};
+use crate::passes::values::{self, Elements, Told};
 use crate::passes::{GridMesh, Malformed, exact};
 use crate::{DecodeError, TriMesh, scene};
 
@@ -19,6 +22,8 @@ pub(crate) struct Extras {
     pub(crate) glue: GlueModels,
     pub(crate) loose: Option<Loose>,
     pub(crate) positions: Option<Vec<[f64; 3]>>,
+    /// What is told of each attribute beyond the surface.
+    pub(crate) values: Vec<Told>,
     pub(crate) order: Option<Order>,
 }
 
@@ -92,45 +97,38 @@ impl Extras {
     }
 }
 
-/// What the parts of an assembled mesh are on the surface, `None` if they lie loose.
-struct Elements {
-    vertices: Vec<Option<u32>>,
-    /// Of each triangle the corner that is its first one.
-    corners: Vec<Option<u32>>,
-}
-
-impl Elements {
-    fn of(&self, domain: Domain) -> Vec<Option<u32>> {
-        let corner = |c: u32, k: u32| c / 3 * 3 + (c + k) % 3;
-        match domain {
-            Domain::Vertex => self.vertices.clone(),
-            Domain::Corner => {
-                let of_face = |c: &Option<u32>| [0, 1, 2].map(|k| c.map(|c| corner(c, k)));
-                self.corners.iter().flat_map(of_face).collect()
-            }
-            Domain::Face => self.corners.iter().map(|c| c.map(|c| c / 3)).collect(),
-        }
-    }
-}
-
 impl Extras {
-    fn elements(&self, num_vertices: usize, triangles: &[[u32; 3]]) -> Elements {
-        let joined = self.joined(num_vertices);
-        let (num_loose, num_loose_faces) =
-            self.loose.as_ref().map_or((0, 0), |loose| (loose.cells.len(), loose.faces.len()));
-        let loose = |count| std::iter::repeat_n(None, count);
-        let vertices = joined.first.iter().map(|&v| Some(v)).chain(loose(num_loose)).collect();
-        let corners = joined.faces(triangles).map(|(face, _)| Some(3 * face));
-        let in_place = Elements { vertices, corners: corners.chain(loose(num_loose_faces)).collect() };
-        let Some(order) = &self.order else { return in_place };
-        let corner = |&c: &u32| in_place.corners[(c / 3) as usize].map(|first| first + c % 3);
-        Elements {
-            vertices: order.vertices.iter().map(|&v| in_place.vertices[v as usize]).collect(),
-            corners: order.corners.iter().map(corner).collect(),
+    /// How many elements lie loose.
+    fn num_loose(&self, domain: Domain) -> usize {
+        let Some(loose) = &self.loose else { return 0 };
+        match domain {
+            Domain::Vertex => loose.cells.len(),
+            Domain::Corner => 3 * loose.faces.len(),
+            Domain::Face => loose.faces.len(),
         }
     }
 
-    /// The attributes of the assembled mesh, from those of the surface. What lies loose has none.
+    /// What has values of an attribute that has these `rows` on the surface.
+    pub(crate) fn elements<'a>(
+        &self,
+        joined: &Joined,
+        triangles: &[[u32; 3]],
+        rows: &'a Rows,
+        domain: Domain,
+    ) -> Elements<'a> {
+        let faces = || joined.faces(triangles);
+        let on_surface = match domain {
+            Domain::Vertex => joined.first.iter().map(|&v| [v, 0]).collect(),
+            Domain::Face => faces().map(|(face, _)| [face, 0]).collect(),
+            Domain::Corner => {
+                faces().flat_map(|(face, t)| [0, 1, 2].map(|k| [3 * face + k, t[k as usize]])).collect()
+            }
+        };
+        Elements { rows, on_surface, num_loose: self.num_loose(domain) }
+    }
+
+    /// The attributes of the assembled mesh, from those of the surface. What lies loose has values only if a chunk
+    /// told them.
     pub(super) fn assemble_attributes(
         &self,
         num_vertices: usize,
@@ -138,17 +136,61 @@ impl Extras {
         mut attributes: Attributes,
     ) -> Attributes {
         let is_whole = self.roots.iter().zip(0..).all(|(&root, v)| root == v);
-        if attributes.list.is_empty() || is_whole && self.loose.is_none() && self.order.is_none() {
+        let is_alone = self.loose.is_none() && self.values.is_empty() && self.order.is_none();
+        if attributes.list.is_empty() || is_whole && is_alone {
             return attributes;
         }
-        let elements = self.elements(num_vertices, triangles);
-        for attribute in &mut attributes.list {
-            let row = |element: Option<u32>| attribute.row(element? as usize).map(|row| row as u32);
-            let rows =
-                elements.of(attribute.domain).into_iter().map(|element| row(element).unwrap_or(NO_ROW));
-            attribute.indices = Some(rows.collect());
+        let joined = self.joined(num_vertices);
+        for (k, attribute) in attributes.list.iter_mut().enumerate() {
+            self.assemble_one(&joined, triangles, self.values.get(k), attribute);
         }
         attributes
+    }
+
+    fn assemble_one(
+        &self,
+        joined: &Joined,
+        triangles: &[[u32; 3]],
+        told: Option<&Told>,
+        attribute: &mut Attribute,
+    ) {
+        let mut rows: Vec<u32> = match told {
+            Some(told) if told.is_exact => {
+                attribute.values = told.values.clone();
+                told.of.clone()
+            }
+            _ => {
+                let row = |element: usize| attribute.row(element).map_or(NO_ROW, |row| row as u32);
+                let row = |element: u32| row(element as usize);
+                match attribute.domain {
+                    Domain::Vertex => joined.first.iter().map(|&v| row(v)).collect(),
+                    Domain::Face => joined.faces(triangles).map(|(face, _)| row(face)).collect(),
+                    Domain::Corner => joined
+                        .faces(triangles)
+                        .flat_map(|(face, _)| [0, 1, 2].map(|k| row(3 * face + k)))
+                        .collect(),
+                }
+            }
+        };
+        if let Some(told) = told.filter(|told| !told.is_exact) {
+            let first = attribute.num_rows() as u32;
+            attribute.values.append(told.values.clone());
+            rows.extend(told.of.iter().map(|&row| if row == NO_ROW { NO_ROW } else { first + row }));
+        }
+        if told.is_none() {
+            rows.extend(std::iter::repeat_n(NO_ROW, self.num_loose(attribute.domain)));
+        }
+        if let Some(order) = &self.order {
+            let corner = |c: u32, k: u32| rows[(c / 3 * 3 + (c + k) % 3) as usize];
+            rows = match attribute.domain {
+                Domain::Vertex => order.vertices.iter().map(|&v| rows[v as usize]).collect(),
+                Domain::Corner => {
+                    order.corners.iter().flat_map(|&c| [0, 1, 2].map(|k| corner(c, k))).collect()
+                }
+                Domain::Face => order.corners.iter().map(|&c| rows[(c / 3) as usize]).collect(),
+            };
+        }
+        attribute.indices = Some(rows);
     }
 }
 
@@ -183,6 +225,9 @@ impl From<DecodeError> for Refused {
 const GLUE_PER_VERTEX: u64 = 28;
 const LOOSE_EACH: u64 = 24;
 const EXACT_PER_VERTEX: u64 = 240;
+/// Of an element, and of each component of its value.
+const VALUE_EACH: u64 = 130;
+const VALUE_PER_COMPONENT: u64 = 60;
 const ORDER_PER_VERTEX: u64 = 24;
 const ORDER_PER_FACE: u64 = 48;
 
@@ -236,6 +281,39 @@ impl Extras {
         chunk.check_memory(EXACT_PER_VERTEX * cells.len() as u64)?;
         let mut coder = RangeDecoder::new(&payload[exact::LADDER_BYTES..]);
         self.positions = Some(exact::code(&mut coder, grid, ladders, &cells, None)?);
+        Ok(())
+    }
+
+    /// Takes values of attributes: exact ones, and those of what lies loose.
+    pub(super) fn read_values(
+        &mut self,
+        chunk: Beside,
+        attributes: &AttributeDecoder,
+    ) -> Result<(), Refused> {
+        let Beside { payload, mesh, .. } = chunk;
+        let triangles = &mesh.surface.triangles;
+        let list = &attributes.declarations.list;
+        let (ladders, used) =
+            values::read_head(payload, list).ok_or(Malformed("the kinds of exact values"))?;
+        let joined = self.joined(mesh.positions.len());
+        let elements = |k: usize, rows| self.elements(&joined, triangles, rows, list[k].domain);
+        let memory = |k: usize| {
+            let on_surface = match list[k].domain {
+                Domain::Vertex => mesh.positions.len(),
+                Domain::Corner => 3 * triangles.len(),
+                Domain::Face => triangles.len(),
+            };
+            let count = self.num_loose(list[k].domain) + if ladders[k].is_some() { on_surface } else { 0 };
+            (VALUE_EACH + VALUE_PER_COMPONENT * list[k].num_components as u64) * count as u64
+        };
+        chunk.check_memory((0..list.len()).map(memory).sum())?;
+        let mut coder = RangeDecoder::new(&payload[used..]);
+        let mut told = Vec::with_capacity(list.len());
+        for (k, rows) in attributes.rows().enumerate() {
+            let elements = elements(k, rows);
+            told.push(values::code(&mut coder, &list[k], &ladders[k], &elements, None)?);
+        }
+        self.values = told;
         Ok(())
     }
 

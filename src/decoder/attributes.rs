@@ -5,7 +5,7 @@ use crate::bitstream::header::Action;
 use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeState};
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Values};
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
-use crate::passes::attribute::{Brought, Coding, Declaration, Declarations, Desk, Layer};
+use crate::passes::attribute::{Brought, Coding, Declaration, Declarations, Desk, Layer, Rows};
 use crate::passes::patch::Patches;
 use crate::passes::work::Work;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
@@ -45,6 +45,11 @@ impl AttributeDecoder {
     /// Bytes per attribute so far.
     pub(super) fn bytes(&self) -> &[u64] {
         &self.bytes
+    }
+
+    /// The rows of each attribute on the surface.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &Rows> {
+        self.state.layers.iter().map(|layer| &layer.rows)
     }
 
     /// A pass has brought vertices from `first` on; `patches` if it is a split.

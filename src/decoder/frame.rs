@@ -63,6 +63,8 @@ pub enum TrailingKind {
     Loose,
     /// The coordinates bit for bit.
     Exact,
+    /// Values of attributes bit for bit, and those of what lies loose.
+    Values,
     /// The order of vertices and triangles.
     Order,
     /// How materials look.
@@ -76,6 +78,7 @@ impl TrailingKind {
         match kind {
             chunk::kind::LOOSE => Self::Loose,
             chunk::kind::EXACT => Self::Exact,
+            chunk::kind::VALUES => Self::Values,
             chunk::kind::ORDER => Self::Order,
             chunk::kind::MATERIALS => Self::Materials,
             _ => Self::Unknown,
@@ -87,6 +90,7 @@ impl TrailingKind {
         match self {
             Self::Loose => "loose",
             Self::Exact => "exact",
+            Self::Values => "values",
             Self::Order => "order",
             Self::Materials => "materials",
             Self::Unknown => "unknown",

@@ -417,6 +417,10 @@ impl Decoder {
             kind::GLUE => self.extras.read_glue(beside),
             kind::LOOSE => self.extras.read_loose(beside),
             kind::EXACT => self.extras.read_exact(beside),
+            kind::VALUES => match &self.attributes {
+                Some(attributes) => self.extras.read_values(beside, attributes),
+                None => return Err(malformed("values of no attributes")),
+            },
             kind::ORDER => self.extras.read_order(beside),
             kind::MATERIALS => assemble::read_materials(payload, &self.limits, used)
                 .map(|materials| self.materials = Some(materials)),
@@ -501,8 +505,8 @@ impl Decoder {
         self.attributes.as_ref().map_or(&[], AttributeDecoder::bytes)
     }
 
-    /// The mesh that was encoded, as far as what has come tells ([`LevelMesh::to_tri_mesh`]), with its attributes.
-    /// What lies loose has none.
+    /// The mesh that was encoded, as far as what has come tells ([`LevelMesh::to_tri_mesh`]), with its attributes:
+    /// once all of a lossless stream is there, bit for bit.
     pub fn to_tri_mesh_with_attributes(&self) -> Option<(TriMesh, Attributes)> {
         Some(self.assemble(self.mesh()?, self.attributes()))
     }

@@ -7,7 +7,7 @@ use crate::bitstream::range_coder::RangeEncoder;
 use crate::mesh::{Domain, NO_ROW};
 use crate::passes::GridMesh;
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
-use crate::passes::attribute::{Brought, Desk, Layer, Truth};
+use crate::passes::attribute::{Brought, Desk, Layer, Rows, Truth};
 use crate::passes::patch::{Patches, Star};
 use crate::passes::work::Work;
 use crate::simplify::LevelRecord;
@@ -26,6 +26,11 @@ impl<'a> AttributeWriter<'a> {
     pub(super) fn new(quantised: &'a Quantised) -> Self {
         let layers = quantised.list.iter().map(|attribute| Layer::new(&attribute.declaration)).collect();
         Self { quantised, layers, truth: vec![Vec::new(); quantised.list.len()], payloads: Vec::new() }
+    }
+
+    /// The decoder's rows of each attribute.
+    pub(super) fn rows(&self) -> Vec<&Rows> {
+        self.layers.iter().map(|layer| &layer.rows).collect()
     }
 
     /// A payload per pass, all empty without attributes.

@@ -17,7 +17,7 @@ pub(super) struct Quantised {
     /// Payloads of the scene and the materials.
     pub(super) scene: Option<Vec<u8>>,
     pub(super) materials: Option<Vec<u8>>,
-    /// Rows that are not finite.
+    /// Rows that are not finite, and so are not kept.
     pub(super) values_dropped: usize,
 }
 
@@ -28,6 +28,8 @@ pub(super) struct QuantisedAttribute {
     pub(super) rows: Vec<i32>,
     /// The row of each vertex, corner or face of the surface, or [`NO_ROW`].
     pub(super) of: Vec<u32>,
+    /// The row of each element of the mesh that lies loose.
+    pub(super) loose: HashMap<u32, u32>,
     /// Which of the seams' attributes it is, unless it belongs to vertices.
     pub(super) track: Option<usize>,
 }
@@ -55,7 +57,7 @@ impl Quantised {
     }
 }
 
-/// What the parts of a surface are in the mesh.
+/// What vertices and triangles are in the mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Elements<'a> {
     /// The vertex of the mesh that each vertex is.
@@ -65,24 +67,26 @@ pub(super) struct Elements<'a> {
 }
 
 impl Elements<'_> {
-    fn of(self, domain: Domain) -> Vec<usize> {
-        let corners = self.corners.iter().map(|&c| c as usize);
+    pub(super) fn of(self, domain: Domain) -> Vec<u32> {
         match domain {
-            Domain::Vertex => self.vertices.iter().map(|&v| v as usize).collect(),
-            Domain::Corner => corners.flat_map(|c| [0, 1, 2].map(|k| c / 3 * 3 + (c + k) % 3)).collect(),
-            Domain::Face => corners.map(|c| c / 3).collect(),
+            Domain::Vertex => self.vertices.to_vec(),
+            Domain::Corner => {
+                self.corners.iter().flat_map(|&c| [0, 1, 2].map(|k| c / 3 * 3 + (c + k) % 3)).collect()
+            }
+            Domain::Face => self.corners.iter().map(|c| c / 3).collect(),
         }
     }
 }
 
-/// Quantises the attributes of `mesh` for a surface.
+/// Quantises the attributes of `mesh` for a surface, and for what is kept beside it.
 ///
 /// # Errors
 /// If one does not fit the mesh, or there are too many.
 pub(super) fn quantise(
     mesh: &TriMesh,
     attributes: &Attributes,
-    elements: Elements,
+    surface: Elements,
+    loose: Elements,
     options: &EncodeOptions,
 ) -> Result<Quantised, EncodeError> {
     let mut quantised =
@@ -102,12 +106,15 @@ pub(super) fn quantise(
         if quantised.list.len() == MAX_ATTRIBUTES {
             return Err(fail(format!("a stream holds {MAX_ATTRIBUTES} attributes")));
         }
-        let row = |&element: &usize| attribute.row(element).map_or(NO_ROW, |row| row as u32);
-        let mut of: Vec<u32> = elements.of(attribute.domain).iter().map(row).collect();
+        let row = |&element: &u32| attribute.row(element as usize).map_or(NO_ROW, |row| row as u32);
+        let mut of: Vec<u32> = surface.of(attribute.domain).iter().map(row).collect();
+        let num_on_surface = of.len();
+        let loose = loose.of(attribute.domain);
+        of.extend(loose.iter().map(row));
         let is_dropped = |row: u32| row != NO_ROW && !is_finite(attribute, row as usize);
         for row in of.iter_mut().filter(|row| is_dropped(**row)) {
             *row = NO_ROW;
-            quantised.values_dropped += 1;
+            quantised.values_dropped += usize::from(!options.lossless);
         }
         let used = compact(&mut of, attribute.num_rows());
         let has_missing = of.contains(&NO_ROW);
@@ -126,7 +133,8 @@ pub(super) fn quantise(
         let rows = integers(attribute, &used, &declaration);
         let track = (attribute.domain != Domain::Vertex).then_some(num_tracks);
         num_tracks += usize::from(track.is_some());
-        let mut one = QuantisedAttribute { declaration, rows, of, track };
+        let loose = loose.into_iter().zip(of.split_off(num_on_surface)).collect();
+        let mut one = QuantisedAttribute { declaration, rows, of, loose, track };
         if track.is_some() {
             one.merge_equal();
         }
@@ -301,7 +309,8 @@ impl QuantisedAttribute {
                 })
             })
             .collect();
-        self.of.iter_mut().filter(|row| **row != NO_ROW).for_each(|row| *row = place[*row as usize]);
+        let of = self.of.iter_mut().chain(self.loose.values_mut());
+        of.filter(|row| **row != NO_ROW).for_each(|row| *row = place[*row as usize]);
         self.rows = rows;
     }
 }

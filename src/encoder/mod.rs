@@ -6,11 +6,17 @@ mod attributes;
 mod options;
 mod order;
 pub(crate) mod quantise;
+mod scale;
 mod schedule;
+mod signatures;
 mod trailing;
+mod values;
 mod write;
 
+use attributes::Elements;
+use signatures::Signatures;
 use trailing::Exact;
+use values::ExactValues;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
@@ -67,8 +73,24 @@ pub fn encode_with_attributes(
     let mut loose = trailing::loose_vertices(mesh, options);
     let points = usable().flatten().chain(&loose).map(|&v| mesh.positions()[v as usize]);
     let grid = quantise::grid_around(points, options.quantization)?;
-    trailing::sort_loose(&mut loose, mesh, &grid);
-    let (ordered, triangles) = order::order(mesh, &grid);
+    let mut loose_corners = trailing::loose_corners(mesh, options);
+    let signatures = || {
+        let (vertices, corners) = surface_elements(mesh);
+        let surface = Elements { vertices: &vertices, corners: &corners };
+        Signatures::new(
+            mesh,
+            attributes,
+            surface,
+            Elements { vertices: &loose, corners: &loose_corners },
+            options,
+        )
+    };
+    let (ordered, triangles) = order::order(mesh, &grid, &signatures);
+    if !loose.is_empty() || !loose_corners.is_empty() {
+        let signatures = signatures();
+        trailing::sort_loose(&mut loose, mesh, &grid, signatures.as_ref());
+        trailing::sort_loose_corners(&mut loose_corners, mesh, &grid, signatures.as_ref());
+    }
     let (surface, source) = cut(triangles, ordered.cells.len());
     if surface.corner_of.len() >= (u32::MAX / 4) as usize {
         return Err(EncodeError::TooLarge(surface.corner_of.len()));
@@ -80,13 +102,17 @@ pub fn encode_with_attributes(
     };
     let cells: Vec<[i32; 3]> = source.iter().map(|&v| ordered.cells[v as usize]).collect();
     let vertices: Vec<u32> = source.iter().map(|&v| ordered.vertex_source[v as usize]).collect();
-    let elements = attributes::Elements { vertices: &vertices, corners: &ordered.corner_source };
-    let quantised = attributes::quantise(mesh, attributes, elements, options)?;
+    let elements = Elements { vertices: &vertices, corners: &ordered.corner_source };
+    let beside = Elements { vertices: &loose, corners: &loose_corners };
+    let quantised = attributes::quantise(mesh, attributes, elements, beside, options)?;
     let features = features(mesh, attributes, &vertices, options)
         .map_err(|error| EncodeError::DescriptorAttributes(error.to_string()))?;
     drop(vertices);
     let glued = trailing::kept(&source);
-    let exact = Exact { mesh, grid: &grid, ordered: &ordered, source: &source, loose: &loose, options };
+    let values = ExactValues { attributes, quantised: &quantised, is_lossless: options.lossless };
+    let (ordered, source, loose) = (&ordered, &source[..], &loose[..]);
+    let loose_corners = &loose_corners[..];
+    let exact = Exact { mesh, grid: &grid, ordered, source, loose, loose_corners, values, options };
     let others = options.other_valences();
     let attempts = std::iter::once(None).chain(others.iter().copied().map(Some));
     let mut surface = Some(surface);
@@ -109,6 +135,15 @@ pub fn encode_with_attributes(
     // The encoder's own bytes always hold a header.
     let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(bytes.len()))?;
     Ok(Encoded { bytes, info, repair, values_dropped: quantised.values_dropped })
+}
+
+/// The vertices that usable triangles have, and the first corner of each of these.
+fn surface_elements(mesh: &TriMesh) -> (Vec<u32>, Vec<u32>) {
+    let usable = || (0..).zip(mesh.triangles()).filter(|(_, t)| has_three_vertices(t));
+    let mut is_used = vec![false; mesh.num_vertices()];
+    usable().for_each(|(_, t): (u32, _)| t.iter().for_each(|&v| is_used[v as usize] = true));
+    let vertices = (0..).zip(is_used).filter_map(|(v, is_used)| is_used.then_some(v)).collect();
+    (vertices, usable().map(|(face, _)| 3 * face).collect())
 }
 
 /// The attributes that the descriptor is to see at the `vertices` of the mesh.

@@ -1,6 +1,7 @@
 //! An order of vertices and triangles that does not depend on the file: encoding the same mesh in another
 //! order, or what a decoder made of its stream, gives the same bytes.
 
+use super::signatures::{Signatures, mix};
 use crate::TriMesh;
 use crate::bitstream::header::Grid;
 use crate::mesh::{CornersAt, has_three_vertices};
@@ -18,8 +19,12 @@ pub(super) struct Ordered {
 }
 
 /// Puts the usable triangles of `mesh` and their vertices in order: triangles from their smallest vertex on,
-/// ascending. There are fewer than 2³⁰ of them.
-pub(super) fn order(mesh: &TriMesh, grid: &Grid) -> (Ordered, Vec<[u32; 3]>) {
+/// ascending. There are fewer than 2³⁰ of them. `signatures` are asked for where places do not tell all apart.
+pub(super) fn order(
+    mesh: &TriMesh,
+    grid: &Grid,
+    signatures: &dyn Fn() -> Option<Signatures>,
+) -> (Ordered, Vec<[u32; 3]>) {
     let mut usable: Vec<(u32, [u32; 3])> =
         (0..).zip(mesh.triangles().iter().copied()).filter(|(_, t)| has_three_vertices(t)).collect();
     let mut is_used = vec![false; mesh.num_vertices()];
@@ -38,7 +43,20 @@ pub(super) fn order(mesh: &TriMesh, grid: &Grid) -> (Ordered, Vec<[u32; 3]>) {
     if keys.windows(2).any(|pair| pair[0] >> 32 == pair[1] >> 32) {
         let triangles: Vec<[u32; 3]> = usable.iter().map(|&(_, t)| t).collect();
         let codes: Vec<u128> = keys.iter().map(|key| key >> 32).collect();
-        let sorted = Ties::new(codes, &triangles).resolve();
+        let mut ties = Ties::new(codes, &triangles);
+        if let Some(signatures) = signatures() {
+            let corners =
+                usable.iter().flat_map(|&(face, t)| (0..3).map(move |k| (t[k], 3 * face + k as u32)));
+            vertex_source
+                .iter()
+                .zip(&mut ties.hash)
+                .for_each(|(&v, hash)| *hash ^= signatures.vertices[v as usize]);
+            corners.for_each(|(v, corner)| {
+                let hash = &mut ties.hash[v as usize];
+                *hash = hash.wrapping_add(signatures.corner(corner));
+            });
+        }
+        let sorted = ties.resolve();
         vertex_source = sorted.iter().map(|&i| vertex_source[i as usize]).collect();
         let mut place = vec![0_u32; sorted.len()];
         sorted.iter().zip(0..).for_each(|(&old, new)| place[old as usize] = new);
@@ -46,6 +64,10 @@ pub(super) fn order(mesh: &TriMesh, grid: &Grid) -> (Ordered, Vec<[u32; 3]>) {
     }
     let mut turned: Vec<([u32; 3], u32)> = usable.par_iter().map(|&(face, t)| turned(t, face)).collect();
     turned.par_sort_unstable();
+    let has_repeated = turned.windows(2).any(|pair| pair[0].0 == pair[1].0);
+    if has_repeated && let Some(signatures) = signatures() {
+        turned.sort_by_cached_key(|&(t, corner)| (t, signatures.triangle(corner), corner));
+    }
     let ordered = Ordered {
         cells: vertex_source.iter().map(|&v| grid.cell(mesh.positions()[v as usize])).collect(),
         vertex_source,
@@ -220,14 +242,6 @@ impl<'a> Ties<'a> {
     }
 }
 
-/// Scatters the bits of a number (the finaliser of SplitMix64).
-fn mix(x: u64) -> u64 {
-    let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -236,7 +250,7 @@ mod tests {
     fn ordered(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> (Vec<[i32; 3]>, Vec<[u32; 3]>) {
         let mesh = TriMesh::new(positions.to_vec(), triangles.to_vec()).unwrap();
         let grid = Grid { precision: 4, origin: [0.0; 3], side: 15.0 };
-        let (ordered, triangles) = order(&mesh, &grid);
+        let (ordered, triangles) = order(&mesh, &grid, &|| None);
         for (t, &corner) in triangles.iter().zip(&ordered.corner_source) {
             let source = mesh.triangles()[(corner / 3) as usize];
             let turned = [0, 1, 2].map(|i| source[(corner as usize + i) % 3]);

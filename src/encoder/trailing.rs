@@ -1,7 +1,11 @@
 //! What follows the last pass: everything of the mesh that the surface on the grid does not tell.
 
+use super::attributes;
 use super::options::EncodeOptions;
 use super::order::Ordered;
+use super::scale::cheapest_scale;
+use super::signatures::Signatures;
+use super::values::ExactValues;
 use super::{expect_sound, padded};
 use crate::TriMesh;
 use crate::bitstream::chunk::kind;
@@ -11,9 +15,12 @@ use crate::decoder::assemble::Extras;
 use crate::mesh::has_three_vertices;
 use crate::morton::morton;
 use crate::passes::GridMesh;
-use crate::passes::exact::{self, Ladder, Scale};
+use crate::passes::attribute::Rows;
+use crate::passes::exact;
+use crate::passes::ladder::Ladder;
 use crate::passes::loose::{self, Loose};
 use crate::passes::order::{self, Order};
+use crate::passes::values::Elements;
 use bitvec::vec::BitVec;
 
 /// Glued vertices are never removed unless they are a larger share of all: the base would be too large.
@@ -45,10 +52,37 @@ pub(super) fn loose_vertices(mesh: &TriMesh, options: &EncodeOptions) -> Vec<u32
     (0..mesh.num_vertices() as u32).filter(|&v| is_named[v as usize] && !is_used[v as usize]).collect()
 }
 
-/// Puts loose vertices in the order of their cells, ties by their coordinates.
-pub(super) fn sort_loose(loose: &mut [u32], mesh: &TriMesh, grid: &Grid) {
+/// The first corners of the triangles that name a vertex twice and are to be kept.
+pub(super) fn loose_corners(mesh: &TriMesh, options: &EncodeOptions) -> Vec<u32> {
+    let loose =
+        (0..).zip(mesh.triangles()).filter(|(_, t)| options.keep_degenerate && !has_three_vertices(t));
+    loose.map(|(face, _): (u32, _)| 3 * face).collect()
+}
+
+/// Puts these, and the corners of each, in an order that does not depend on that of the mesh.
+pub(super) fn sort_loose_corners(
+    corners: &mut [u32],
+    mesh: &TriMesh,
+    grid: &Grid,
+    signatures: Option<&Signatures>,
+) {
+    let turn = |corner: u32| {
+        let t = mesh.triangles()[(corner / 3) as usize];
+        let cell = |i: u32| grid.cell(mesh.positions()[t[((corner + i) % 3) as usize] as usize]);
+        ([cell(0), cell(1), cell(2)], signatures.map(|s| s.triangle(corner)))
+    };
+    for corner in corners.iter_mut() {
+        let turns = [0, 1, 2].map(|k| *corner / 3 * 3 + (*corner + k) % 3);
+        *corner = turns.into_iter().min_by_key(|&turned| turn(turned)).unwrap_or(*corner);
+    }
+    corners.sort_by_cached_key(|&corner| turn(corner));
+}
+
+/// Puts loose vertices in the order of their cells, ties by their coordinates and attributes.
+pub(super) fn sort_loose(loose: &mut [u32], mesh: &TriMesh, grid: &Grid, signatures: Option<&Signatures>) {
     let at = |v: u32| mesh.positions()[v as usize];
-    loose.sort_by_cached_key(|&v| (morton(grid.cell(at(v))), at(v).map(f64::to_bits), v));
+    let signature = |v: u32| signatures.map(|s| s.vertices[v as usize]);
+    loose.sort_by_cached_key(|&v| (morton(grid.cell(at(v))), at(v).map(f64::to_bits), signature(v), v));
 }
 
 /// A mesh, and how its surface was made of it.
@@ -61,6 +95,9 @@ pub(super) struct Exact<'a> {
     pub(super) source: &'a [u32],
     /// Vertices of the mesh that follow those of the surface.
     pub(super) loose: &'a [u32],
+    /// First corners of the triangles that are no part of the surface, in order.
+    pub(super) loose_corners: &'a [u32],
+    pub(super) values: ExactValues<'a>,
     pub(super) options: &'a EncodeOptions,
 }
 
@@ -71,6 +108,15 @@ pub(super) struct Written<'a> {
     pub(super) vertex_source: &'a [u32],
     /// Triangle of the cut surface, and so of the ordered mesh, for each triangle.
     pub(super) face_source: &'a [u32],
+    /// Of each attribute.
+    pub(super) rows: Vec<&'a Rows>,
+}
+
+/// The corner of the triangle that `corner` is of where it has the vertex `first`.
+fn turned_to(triangle: [u32; 3], corner: u32, first: u32) -> u32 {
+    let place = triangle.iter().position(|&v| v == first);
+    debug_assert!(place.is_some());
+    corner / 3 * 3 + place.unwrap_or(0) as u32
 }
 
 impl Exact<'_> {
@@ -86,7 +132,7 @@ impl Exact<'_> {
         let vertices: Vec<u32> = on_surface.chain(self.loose.iter().copied()).collect();
         let mut chunks = Vec::new();
 
-        let (loose, loose_faces) = self.loose(&vertices);
+        let (loose, loose_corners) = self.loose(&vertices);
         let num_joined = joined.first.len();
         if !loose.cells.is_empty() || !loose.faces.is_empty() {
             chunks.push((kind::LOOSE, self.write_loose(&loose, num_joined)));
@@ -95,31 +141,48 @@ impl Exact<'_> {
         if self.options.lossless {
             chunks.push((kind::EXACT, self.write_positions(&vertices)));
         }
+        let triangles = &surface.mesh.surface.triangles;
+        let on_surface = triangles.iter().zip(surface.face_source).map(|(t, &f)| {
+            let corner = self.ordered.corner_source[f as usize];
+            let first = vertices[joined.place[t[0] as usize] as usize];
+            turned_to(self.mesh.triangles()[(corner / 3) as usize], corner, first)
+        });
+        let corners: Vec<u32> = on_surface.chain(loose_corners).collect();
+        let list = &self.values.quantised.list;
+        if !list.is_empty() {
+            let elements: Vec<Elements> = list
+                .iter()
+                .zip(&surface.rows)
+                .map(|(one, rows)| extras.elements(&joined, triangles, rows, one.declaration.domain))
+                .collect();
+            let sources = attributes::Elements { vertices: &vertices, corners: &corners };
+            chunks.extend(self.values.payload(&elements, sources).map(|payload| (kind::VALUES, payload)));
+        }
         if self.options.keep_order {
-            let faces = extras.triangles(&joined, &surface.mesh.surface.triangles);
-            let on_surface = surface.face_source.iter().map(|&f| self.ordered.corner_source[f as usize] / 3);
-            let face_source: Vec<u32> = on_surface.chain(loose_faces).collect();
-            debug_assert_eq!(faces.len(), face_source.len());
-            chunks.push((kind::ORDER, self.write_order(&vertices, &faces, &face_source)));
+            let faces = extras.triangles(&joined, triangles);
+            debug_assert_eq!(faces.len(), corners.len());
+            chunks.push((kind::ORDER, write_order(&vertices, &faces, &corners)));
         }
         chunks
     }
 
-    /// What is loose, and the triangle of the mesh for each loose face.
+    /// What is loose, and the corner of the mesh that is the first of each loose face.
     fn loose(&self, vertices: &[u32]) -> (Loose, Vec<u32>) {
         let cells = self.loose.iter().map(|&v| self.grid.cell(self.mesh.positions()[v as usize])).collect();
-        if !self.options.keep_degenerate {
-            return (Loose { cells, faces: Vec::new() }, Vec::new());
-        }
         let mut place = vec![0_u32; self.mesh.num_vertices()];
         vertices.iter().zip(0..).for_each(|(&v, i)| place[v as usize] = i);
-        let triangles = (0..).zip(self.mesh.triangles()).filter(|(_, t)| !has_three_vertices(t));
-        let turned = |(face, t): (u32, &[u32; 3])| {
-            let [a, b, c] = t.map(|v| place[v as usize]);
-            ([a, b, c].min([b, c, a]).min([c, a, b]), face)
+        let turned = |&corner: &u32| {
+            let triangle = self.mesh.triangles()[(corner / 3) as usize].map(|v| place[v as usize]);
+            let turn = |k: u32| {
+                let first = (corner + k) % 3;
+                ([0, 1, 2].map(|i| triangle[(first as usize + i) % 3]), corner / 3 * 3 + first)
+            };
+            [turn(1), turn(2)]
+                .into_iter()
+                .fold(turn(0), |best, next| if next.0 < best.0 { next } else { best })
         };
-        let mut faces: Vec<([u32; 3], u32)> = triangles.map(turned).collect();
-        faces.sort_unstable();
+        let mut faces: Vec<([u32; 3], u32)> = self.loose_corners.iter().map(turned).collect();
+        faces.sort_by_key(|&(t, _)| t);
         let (faces, source) = faces.into_iter().unzip();
         (Loose { cells, faces }, source)
     }
@@ -135,8 +198,12 @@ impl Exact<'_> {
         let at = |i: usize| self.mesh.positions()[vertices[i] as usize];
         let is_wide =
             (0..vertices.len()).any(|i| at(i).iter().any(|&x| f64::from(x as f32).to_bits() != x.to_bits()));
-        let scales =
-            [0, 1, 2].map(|axis| self.cheapest_scale(is_wide, &|i| at(i)[axis], axis, vertices.len()));
+        let half = self.grid.half_step();
+        let middle = |i: usize| self.grid.position(self.grid.cell(at(i)), self.grid.precision);
+        let scales = [0, 1, 2].map(|axis| {
+            let number = |i: usize| at(i)[axis];
+            cheapest_scale(is_wide, vertices.len(), &number, &|i| [middle(i)[axis], half])
+        });
         let ladders = scales.map(|scale| Ladder::new(is_wide, scale));
         let target = |i: usize| [0, 1, 2].map(|axis| (ladders[axis].key(at(i)[axis]), at(i)[axis]));
         let cells: Vec<[i32; 3]> = (0..vertices.len()).map(|i| self.grid.cell(at(i))).collect();
@@ -146,56 +213,16 @@ impl Exact<'_> {
         payload.extend(coder.finish());
         payload
     }
+}
 
-    /// The numbers that all coordinates of an axis are, but for a few, and that take the fewest bits.
-    fn cheapest_scale(&self, is_wide: bool, at: &dyn Fn(usize) -> f64, axis: usize, count: usize) -> Scale {
-        /// Coordinates that are looked at first.
-        const SAMPLES: usize = 2000;
-        /// One of so many may be no such number.
-        const EXCEPTIONS: usize = 200;
-        let sample: Vec<f64> = (0..count).step_by(count.div_ceil(SAMPLES).max(1)).map(at).collect();
-        let fits = |ladder: Ladder, sample: &mut dyn Iterator<Item = f64>, count: usize| {
-            sample.filter(|&x| ladder.key(x).is_none()).take(count / EXCEPTIONS + 1).count() * EXCEPTIONS
-                <= count
-        };
-        let bits = |ladder: Ladder| -> f64 {
-            let width = |&x: &f64| {
-                let mut cell = [0; 3];
-                cell[axis] = self.grid.cell([x; 3])[axis];
-                let middle = self.grid.position(cell, self.grid.precision)[axis];
-                let [low, high] = ladder.range(middle, self.grid.half_step());
-                ((high - low) as f64 + 1.0).log2()
-            };
-            sample.iter().map(width).sum::<f64>() / sample.len() as f64
-        };
-        let decimal = (0..=Scale::MAX_DECIMAL).map(Scale::Decimal);
-        let binary = (0..=Scale::MAX_BINARY).map(Scale::Binary);
-        let suits = |scale: &Scale| {
-            let ladder = Ladder::new(is_wide, *scale);
-            fits(ladder, &mut sample.iter().copied(), sample.len())
-                && fits(ladder, &mut (0..count).map(at), count)
-        };
-        // The coarsest of each kind takes the fewest bits.
-        let found = [decimal.clone().find(suits), binary.clone().find(suits), Some(Scale::Float)];
-        let cost = |scale: &Scale| bits(Ladder::new(is_wide, *scale));
-        found.into_iter().flatten().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(Scale::Float)
-    }
-
-    fn write_order(&self, vertices: &[u32], faces: &[[u32; 3]], face_source: &[u32]) -> Vec<u8> {
-        let mut order = Order { vertices: (0..vertices.len() as u32).collect(), corners: Vec::new() };
-        order.vertices.sort_unstable_by_key(|&v| vertices[v as usize]);
-        let mut by_file: Vec<u32> = (0..faces.len() as u32).collect();
-        by_file.sort_unstable_by_key(|&f| face_source[f as usize]);
-        let corner = |&f: &u32| {
-            let wanted = self.mesh.triangles()[face_source[f as usize] as usize];
-            let face = faces[f as usize].map(|v| vertices[v as usize]);
-            let first = (0..3).find(|&i| [0, 1, 2].map(|k| face[(i + k) % 3]) == wanted);
-            debug_assert!(first.is_some(), "{face:?} is not {wanted:?}");
-            3 * f + first.unwrap_or(0) as u32
-        };
-        order.corners = by_file.iter().map(corner).collect();
-        let mut coder = RangeEncoder::new();
-        expect_sound(order::code(&mut coder, vertices.len(), faces, Some(&order)));
-        coder.finish()
-    }
+/// `corners`: the corner of the mesh that is the first of each face.
+fn write_order(vertices: &[u32], faces: &[[u32; 3]], corners: &[u32]) -> Vec<u8> {
+    let mut order = Order { vertices: (0..vertices.len() as u32).collect(), corners: Vec::new() };
+    order.vertices.sort_unstable_by_key(|&v| vertices[v as usize]);
+    let mut by_file: Vec<u32> = (0..faces.len() as u32).collect();
+    by_file.sort_unstable_by_key(|&f| corners[f as usize] / 3);
+    order.corners = by_file.iter().map(|&f| 3 * f + (3 - corners[f as usize] % 3) % 3).collect();
+    let mut coder = RangeEncoder::new();
+    expect_sound(order::code(&mut coder, vertices.len(), faces, Some(&order)));
+    coder.finish()
 }

@@ -55,6 +55,7 @@ pub(super) fn write(
         mesh: &writer.mesh,
         vertex_source: &writer.vertex_source,
         face_source: &writer.face_source,
+        rows: writer.attributes.rows(),
     };
     let mut trailing = exact.trailing(&surface, writer.roots);
     let is_large = |payload: &&Vec<u8>| payload.len() > MOST_IN_FRONT;

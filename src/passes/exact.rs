@@ -1,154 +1,12 @@
 //! Coordinates bit for bit (`format/SPEC.md`, section 7.8): which of the numbers that lie in a cell it is.
 
+use super::ladder::{Ladder, Scale};
+use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::bitstream::header::Grid;
 use crate::bitstream::mixer::PlainBits;
-use crate::bitstream::range_coder::{BitCoder, PROBABILITY_ONE};
+use crate::bitstream::range_coder::BitCoder;
 use std::collections::HashMap;
-
-/// Which numbers the coordinates of one axis are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scale {
-    /// Any float.
-    Float,
-    /// k / 10^digits, rounded, with a whole number k.
-    Decimal(u32),
-    /// k / 2^digits, rounded.
-    Binary(u32),
-}
-
-impl Scale {
-    /// Largest numbers of digits.
-    pub(crate) const MAX_DECIMAL: u32 = 15;
-    pub(crate) const MAX_BINARY: u32 = 60;
-    const FIRST_BINARY: u32 = 32;
-
-    pub(crate) fn read(code: u8) -> Option<Self> {
-        match u32::from(code) {
-            0 => Some(Self::Float),
-            code @ 1.. if code - 1 <= Self::MAX_DECIMAL => Some(Self::Decimal(code - 1)),
-            code @ Self::FIRST_BINARY.. if code - Self::FIRST_BINARY <= Self::MAX_BINARY => {
-                Some(Self::Binary(code - Self::FIRST_BINARY))
-            }
-            _ => None,
-        }
-    }
-
-    #[cfg(feature = "encoder")]
-    pub(crate) fn code(self) -> u8 {
-        match self {
-            Self::Float => 0,
-            Self::Decimal(digits) => 1 + digits as u8,
-            Self::Binary(digits) => (Self::FIRST_BINARY + digits) as u8,
-        }
-    }
-
-    /// Steps to a unit; exact. `None` for floats.
-    fn steps(self) -> Option<f64> {
-        match self {
-            Self::Float => None,
-            Self::Decimal(digits) => Some((0..digits).fold(1.0, |x, _| x * 10.0)),
-            Self::Binary(digits) => Some((0..digits).fold(1.0, |x, _| x * 2.0)),
-        }
-    }
-}
-
-/// The numbers that coordinates of one axis may be, in order: each has a key, and larger ones larger keys.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Ladder {
-    is_wide: bool,
-    /// Steps to a unit, unless all floats are on it.
-    steps: Option<f64>,
-}
-
-/// Largest k of a decimal or binary number: whole doubles up to here are exact.
-const MAX_WHOLE: i64 = 1 << 53;
-const TOP: u64 = 1 << 63;
-
-impl Ladder {
-    pub(crate) fn new(is_wide: bool, scale: Scale) -> Self {
-        Self { is_wide, steps: scale.steps() }
-    }
-
-    /// Rounded to what the file had.
-    fn rounded(self, x: f64) -> f64 {
-        if self.is_wide { x } else { f64::from(x as f32) }
-    }
-
-    /// The number of a key.
-    fn value(self, key: u64) -> f64 {
-        match self.steps {
-            Some(steps) => self.rounded((key ^ TOP) as i64 as f64 / steps),
-            None if self.is_wide => f64::from_bits(unordered(key, 64)),
-            None => f64::from(f32::from_bits(unordered(key, 32) as u32)),
-        }
-    }
-
-    /// The key of a number that is on the ladder.
-    #[cfg(feature = "encoder")]
-    pub(crate) fn key(self, x: f64) -> Option<u64> {
-        let key = match self.steps {
-            Some(steps) => {
-                let k = (x * steps).round();
-                (k.abs() < MAX_WHOLE as f64).then_some(k as i64 as u64 ^ TOP)
-            }
-            None => Some(self.float_key(x)),
-        };
-        key.filter(|&key| self.value(key).to_bits() == x.to_bits())
-    }
-
-    fn float_key(self, x: f64) -> u64 {
-        if self.is_wide { ordered(x.to_bits(), 64) } else { ordered(u64::from((x as f32).to_bits()), 32) }
-    }
-
-    /// The least and the largest key that a coordinate within `half` of `middle` may have; some more do no
-    /// harm.
-    pub(crate) fn range(self, middle: f64, half: f64) -> [u64; 2] {
-        let (low, high) = (middle - half, middle + half);
-        match self.steps {
-            Some(steps) => {
-                let whole = |x: f64| (x as i64).clamp(-MAX_WHOLE, MAX_WHOLE);
-                // Towards zero, so that a number between is rounded up or down.
-                let down = whole(low * steps);
-                let up = whole(high * steps);
-                let low = down - i64::from(low < 0.0 && down as f64 > low * steps);
-                let high = up + i64::from(high > 0.0 && (up as f64) < high * steps);
-                [low as u64 ^ TOP, high.max(low) as u64 ^ TOP]
-            }
-            None => {
-                let last = if self.is_wide { u64::MAX } else { u64::from(u32::MAX) };
-                let low = self.float_key(low).saturating_sub(1);
-                [low, self.float_key(high).saturating_add(1).clamp(low, last)]
-            }
-        }
-    }
-
-    /// The chance that a key from `low` to `high` is above `middle`: each counts by the way to the next number.
-    fn share_above(self, low: u64, middle: u64, high: u64) -> u32 {
-        let mut share = ((high - middle) as f64) / ((high - low) as f64 + 1.0);
-        if self.steps.is_none() && high - low > 16 {
-            let [low, middle, high] = [low, middle, high].map(|key| self.value(key));
-            let by_width = (high - middle) / (high - low);
-            if by_width > 0.0 && by_width < 1.0 {
-                share = by_width;
-            }
-        }
-        ((share * f64::from(PROBABILITY_ONE)) as u32).clamp(16, PROBABILITY_ONE - 16)
-    }
-}
-
-/// Keys ascend with the numbers, −0 before 0.
-fn ordered(bits: u64, width: u32) -> u64 {
-    let sign = 1 << (width - 1);
-    let mask = u64::MAX >> (64 - width);
-    if bits & sign != 0 { !bits & mask } else { bits | sign }
-}
-
-fn unordered(key: u64, width: u32) -> u64 {
-    let sign = 1 << (width - 1);
-    let mask = u64::MAX >> (64 - width);
-    if key & sign != 0 { key & !sign } else { !key & mask }
-}
 
 /// Bytes in front of the coded coordinates: whether the file had doubles, and the scale of each axis.
 pub(crate) const LADDER_BYTES: usize = 4;
@@ -170,20 +28,26 @@ pub(crate) fn write_ladders(is_wide: bool, scales: [Scale; 3]) -> Vec<u8> {
 /// Ranges of fewer keys have models for all bits.
 const MODELLED: u64 = 32;
 
-/// Adaptive models of one axis.
-struct Axis {
+/// Keys that a number may be off what was expected.
+const MOST_AWAY: u64 = 1 << 40;
+
+/// What is to be coded, for encoders: the key, if the number is on the ladder, and the number.
+pub(crate) type Keyed = Option<(Option<u64>, f64)>;
+
+/// Adaptive models of numbers of one kind, such as the coordinates of an axis.
+pub(super) struct ExactCoder {
     ladder: Ladder,
     /// The key last met in each cell.
     last: HashMap<i32, u64>,
     is_last: PlainBits,
-    /// How the last three coordinates were that bit, the newest lowest.
+    /// How the last three numbers were that bit, the newest lowest.
     history: usize,
     is_off: PlainBits,
     small: PlainBits,
 }
 
-impl Axis {
-    fn new(ladder: Ladder) -> Self {
+impl ExactCoder {
+    pub(super) fn new(ladder: Ladder) -> Self {
         Self {
             ladder,
             last: HashMap::new(),
@@ -194,14 +58,19 @@ impl Axis {
         }
     }
 
-    /// Codes the coordinate in `cell`, whose numbers have keys from `low` to `high`; `None` if a stream
-    /// names no number.
-    fn code<B: BitCoder>(
+    #[cfg(feature = "encoder")]
+    pub(super) fn ladder(&self) -> Ladder {
+        self.ladder
+    }
+
+    /// Codes the number in `cell`, all of whose numbers are within `half` of `middle`; `None` if a stream names no
+    /// number.
+    pub(super) fn code<B: BitCoder>(
         &mut self,
         coder: &mut B,
         cell: i32,
-        [low, high]: [u64; 2],
-        target: Option<(Option<u64>, f64)>,
+        [middle, half]: [f64; 2],
+        target: Keyed,
     ) -> Option<f64> {
         let key = target.and_then(|t| t.0);
         if let Some(&last) = self.last.get(&cell) {
@@ -211,13 +80,57 @@ impl Axis {
                 return Some(self.ladder.value(last));
             }
         }
-        let inside = key.filter(|key| (low..=high).contains(key));
+        match self.code_in_range(coder, [middle, half], target)? {
+            Ok(key) => {
+                self.last.insert(cell, key);
+                Some(self.ladder.value(key)).filter(|x| x.is_finite())
+            }
+            Err(off) => Some(off),
+        }
+    }
+
+    /// Codes a number that should be within `half` of `middle`: its key, or a number that is not.
+    fn code_in_range<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        [middle, half]: [f64; 2],
+        target: Keyed,
+    ) -> Option<Result<u64, f64>> {
+        let [low, high] = self.ladder.range(middle, half);
+        let inside = target.and_then(|t| t.0).filter(|key| (low..=high).contains(key));
         if self.is_off.code(coder, 0, target.is_some() && inside.is_none()) {
+            return self.code_off(coder, target.map_or(0.0, |t| t.1)).map(Err);
+        }
+        Some(Ok(self.code_between(coder, [low, high], inside.unwrap_or(low))))
+    }
+
+    /// Codes a number that should be within half of a middle, in no cell.
+    pub(super) fn code_around<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        around: [f64; 2],
+        target: Keyed,
+    ) -> Option<f64> {
+        let number = self.code_in_range(coder, around, target)?;
+        number.map_or_else(Some, |key| Some(self.ladder.value(key))).filter(|x| x.is_finite())
+    }
+
+    /// Codes a number that should be nearly `expected`, by how many keys it is off.
+    pub(super) fn code_expected<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        ways: &mut Numbers,
+        expected: f64,
+        target: Keyed,
+    ) -> Option<f64> {
+        let near = self.ladder.nearest(expected);
+        let way = target.and_then(|t| t.0).map(|key| key.wrapping_sub(near) as i64);
+        let way = way.filter(|way| way.unsigned_abs() < MOST_AWAY);
+        if self.is_off.code(coder, 0, target.is_some() && way.is_none()) {
             return self.code_off(coder, target.map_or(0.0, |t| t.1));
         }
-        let key = self.code_between(coder, [low, high], inside.unwrap_or(low));
-        self.last.insert(cell, key);
-        Some(self.ladder.value(key)).filter(|x| x.is_finite())
+        let way = ways.code_signed(coder, 0, way.unwrap_or(0));
+        self.ladder.away(near, way).filter(|x| x.is_finite())
     }
 
     fn code_between<B: BitCoder>(&mut self, coder: &mut B, [low, high]: [u64; 2], key: u64) -> u64 {
@@ -269,16 +182,15 @@ pub(crate) fn code<B: BitCoder>(
     cells: &[[i32; 3]],
     target: Option<Target>,
 ) -> Result<Vec<[f64; 3]>, Malformed> {
-    let mut axes = ladders.map(Axis::new);
+    let mut axes = ladders.map(ExactCoder::new);
     let half = grid.half_step();
     let mut positions = Vec::with_capacity(cells.len());
     for (i, &cell) in cells.iter().enumerate() {
         let middle = grid.position(cell, grid.precision);
         let mut position = [0.0; 3];
         for (a, axis) in axes.iter_mut().enumerate() {
-            let range = axis.ladder.range(middle[a], half);
             let wanted = target.map(|t| t(i)[a]);
-            let number = axis.code(coder, cell[a], range, wanted);
+            let number = axis.code(coder, cell[a], [middle[a], half], wanted);
             position[a] = number.ok_or(Malformed("a coordinate that is no number"))?;
         }
         if coder.is_exhausted() {

@@ -12,6 +12,7 @@ pub(crate) mod coordinates;
 pub(crate) mod exact;
 pub(crate) mod glue;
 pub(crate) mod guess;
+pub(crate) mod ladder;
 pub(crate) mod loose;
 pub(crate) mod numbers;
 pub(crate) mod order;
@@ -20,6 +21,7 @@ pub(crate) mod plain;
 mod polygon;
 pub(crate) mod refine;
 pub(crate) mod surroundings;
+pub(crate) mod values;
 pub(crate) mod work;
 
 use crate::mesh::Surface;

@@ -15,3 +15,4 @@ pub(crate) use declaration::{Coding, Declaration, Declarations};
 #[cfg(feature = "encoder")]
 pub(crate) use layer::Truth;
 pub(crate) use layer::{Brought, Desk, Layer};
+pub(crate) use rows::Rows;

@@ -1,0 +1,127 @@
+//! Values of attributes bit for bit, and those of what lies loose.
+
+use super::attributes::{Quantised, QuantisedAttribute};
+use super::expect_sound;
+use super::scale::cheapest_scale;
+use crate::bitstream::range_coder::RangeEncoder;
+use crate::mesh::{Attribute, Attributes, NO_ROW, Values};
+use crate::passes::attribute::Declaration;
+use crate::passes::ladder::{Ladder, Scale};
+use crate::passes::values::{self, Elements, Ladders, Truth};
+use bitvec::vec::BitVec;
+
+/// Attributes of a mesh, and what the passes tell of them.
+#[derive(Clone, Copy)]
+pub(super) struct ExactValues<'a> {
+    pub(super) attributes: &'a Attributes,
+    pub(super) quantised: &'a Quantised,
+    pub(super) is_lossless: bool,
+}
+
+impl ExactValues<'_> {
+    /// The payload; `None` if there is nothing to say. `elements` of each attribute, and what all of them are in the
+    /// mesh.
+    pub(super) fn payload(
+        &self,
+        elements: &[Elements],
+        sources: super::attributes::Elements,
+    ) -> Option<Vec<u8>> {
+        let list = self.attributes.list.iter().zip(&self.quantised.list).zip(elements);
+        let parts: Vec<Part> = list
+            .map(|((attribute, quantised), elements)| {
+                let of = sources.of(quantised.declaration.domain);
+                let mut part = Part { attribute, quantised, elements, of, scales: None };
+                part.scales = self.is_lossless.then(|| part.scales()).flatten();
+                part
+            })
+            .collect();
+        if parts.iter().all(|part| part.scales.is_none() && part.elements.num_loose == 0) {
+            return None;
+        }
+        let declarations: Vec<Declaration> =
+            self.quantised.list.iter().map(|one| one.declaration.clone()).collect();
+        let scales: Vec<_> = parts.iter().map(|part| part.scales.clone()).collect();
+        let mut coder = RangeEncoder::new();
+        parts.iter().for_each(|part| part.write(&mut coder));
+        let mut payload = values::write_head(&declarations, &scales);
+        payload.extend(coder.finish());
+        Some(payload)
+    }
+}
+
+/// One attribute.
+struct Part<'a> {
+    attribute: &'a Attribute,
+    quantised: &'a QuantisedAttribute,
+    elements: &'a Elements<'a>,
+    /// The element of the mesh that each is.
+    of: Vec<u32>,
+    scales: Option<Vec<Scale>>,
+}
+
+impl<'a> Part<'a> {
+    fn channels(&self, row: u32) -> Option<&'a [i32]> {
+        let n = self.quantised.declaration.num_channels();
+        (row != NO_ROW).then(|| &self.quantised.rows[row as usize * n..][..n])
+    }
+
+    /// Channels that a decoder has for an element.
+    fn known(&self, element: usize) -> Option<&'a [i32]> {
+        match self.elements.on_surface.get(element) {
+            Some(&[there, _]) => {
+                let row = self.elements.rows.of.get(there as usize).copied().filter(|&row| row != NO_ROW)?;
+                Some(self.elements.rows.get(row))
+            }
+            None => self.loose(element - self.elements.on_surface.len()),
+        }
+    }
+
+    fn loose(&self, i: usize) -> Option<&'a [i32]> {
+        let element = self.of[self.elements.on_surface.len() + i];
+        self.channels(self.quantised.loose.get(&element).copied().unwrap_or(NO_ROW))
+    }
+
+    fn row(&self, element: usize) -> Option<usize> {
+        self.attribute.row(self.of[element] as usize)
+    }
+
+    /// The kinds of the components' numbers; `None` if the channels of all rows tell their bits.
+    fn scales(&self) -> Option<Vec<Scale>> {
+        let declaration = &self.quantised.declaration;
+        let scalar = values::scalar_of_inexact(declaration)?;
+        let n = declaration.num_components;
+        let mut is_seen: BitVec = BitVec::repeat(false, self.attribute.num_rows());
+        let mut is_exact = true;
+        let mut rows = Vec::new();
+        for element in 0..self.of.len() {
+            let Some(row) = self.row(element).filter(|&row| !is_seen.replace(row, true)) else { continue };
+            let Some(channels) = self.known(element) else {
+                is_exact = false;
+                continue;
+            };
+            rows.push((row, channels));
+            let mut plain = Values::new(scalar);
+            declaration.restore(channels, &mut plain);
+            is_exact &= (0..n).all(|k| plain.bits(k) == self.attribute.values.bits(row * n + k));
+        }
+        if is_exact {
+            return None;
+        }
+        let scale = |k: usize| {
+            let number = |i: usize| self.attribute.values.number(rows[i].0 * n + k).unwrap_or_default();
+            let around = |i: usize| values::around(declaration, rows[i].1, k);
+            cheapest_scale(values::is_wide(scalar), rows.len(), &number, &around)
+        };
+        Some((0..n).map(scale).collect())
+    }
+
+    fn write(&self, coder: &mut RangeEncoder) {
+        let declaration = &self.quantised.declaration;
+        let wide = values::scalar_of_inexact(declaration).is_some_and(values::is_wide);
+        let ladder = |scale: &Scale| Ladder::new(wide, *scale);
+        let ladders: Ladders = self.scales.as_ref().map(|scales| scales.iter().map(ladder).collect());
+        let (row, loose) = (|i: usize| self.row(i), |i: usize| self.loose(i));
+        let truth = Truth { values: &self.attribute.values, row: &row, loose: &loose };
+        expect_sound(values::code(coder, declaration, &ladders, self.elements, Some(&truth)));
+    }
+}

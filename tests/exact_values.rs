@@ -1,0 +1,229 @@
+//! Attributes bit for bit, and those of what lies loose.
+#![cfg(feature = "encoder")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use common::attributed::{all, atlas, colours, flat_normals, materials};
+use common::kinds::every_kind;
+use common::{Random, build, sphere};
+use lwc::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
+use lwc::{Decoder, EncodeOptions, Limits, Profile, TriMesh, encode_with_attributes};
+
+fn everything() -> EncodeOptions {
+    let mut options = EncodeOptions::default();
+    (options.keep_isolated, options.keep_degenerate) = (true, true);
+    (options.lossless, options.keep_order) = (true, true);
+    options
+}
+
+fn encode(mesh: &TriMesh, attributes: &Attributes, options: &EncodeOptions) -> Vec<u8> {
+    let encoded = encode_with_attributes(mesh, attributes, options, &|_| {}).unwrap();
+    assert_eq!(encoded.values_dropped, 0);
+    encoded.bytes
+}
+
+fn decode(bytes: &[u8]) -> (TriMesh, Attributes) {
+    let mut decoder = Decoder::new(Limits::default());
+    decoder.push(bytes).unwrap();
+    assert!(decoder.is_complete());
+    decoder.to_tri_mesh_with_attributes().unwrap()
+}
+
+/// Numbers of all types for the elements of a mesh: small, large, far apart, and those that are no numbers.
+fn nasty(mesh: &TriMesh, domain: Domain, scalar: ScalarType, semantic: Semantic, seed: u64) -> Attribute {
+    let mut random = Random(seed);
+    let num_components = if semantic == Semantic::Normal { 3 } else { 1 + seed as usize % 4 };
+    let mut values = Values::new(scalar);
+    let count = domain.num_elements(mesh);
+    let has_no_numbers = seed.is_multiple_of(2);
+    for k in 0..count * num_components {
+        let bits = match (scalar, random.next() % 8) {
+            (ScalarType::F32, 0) => u64::from((-0.0_f32).to_bits()),
+            (ScalarType::F32, 1) => u64::from(f32::from_bits(random.next() as u32 & 0x007f_ffff).to_bits()),
+            (ScalarType::F32, 2) if has_no_numbers => 0x7fc0_0001 + random.next() % 9,
+            (ScalarType::F32, 3) if has_no_numbers => u64::from(f32::NEG_INFINITY.to_bits()),
+            (ScalarType::F32, 4) => u64::from((0.001 * (k % 1000) as f32).to_bits()),
+            (ScalarType::F32, _) => u64::from((random.unit() as f32).to_bits()),
+            (ScalarType::F64, 0) => (-0.0_f64).to_bits(),
+            (ScalarType::F64, 1) => random.next() & 0x000f_ffff_ffff_ffff,
+            (ScalarType::F64, 2) if has_no_numbers => f64::NAN.to_bits() | (random.next() % 99),
+            (ScalarType::F64, 3) if has_no_numbers => f64::MAX.to_bits(),
+            (ScalarType::F64, _) => (random.unit() * 1e6).to_bits(),
+            (ScalarType::U32 | ScalarType::I32, _) => random.next() >> 32 >> (seed % 2 * 20),
+            (scalar, _) => random.next() & (u64::MAX >> (64 - 8 * scalar.num_bytes())),
+        };
+        values.push_bits(bits);
+    }
+    let indices = seed.is_multiple_of(3).then(|| {
+        let index = |k: u32| if random.next().is_multiple_of(5) { NO_ROW } else { k };
+        (0..count as u32).map(index).collect()
+    });
+    let name = format!("{scalar:?} of {domain}");
+    Attribute { indices, ..Attribute::new(name, semantic, domain, num_components, values) }
+}
+
+/// Names and bits of all values, element by element.
+fn bits(mesh: &TriMesh, attributes: &Attributes) -> Vec<Vec<Vec<u64>>> {
+    let of_row = |a: &Attribute, row: usize| -> Vec<u64> {
+        match a.values.names() {
+            Some(names) => names[row].bytes().map(u64::from).collect(),
+            None => {
+                (0..a.num_components).map(|k| a.values.bits(row * a.num_components + k).unwrap()).collect()
+            }
+        }
+    };
+    let of_one = |a: &Attribute| {
+        assert_eq!(a.validate(mesh), Ok(()), "{}", a.name);
+        let count = a.domain.num_elements(mesh);
+        (0..count).map(|k| a.row(k).map(|row| of_row(a, row)).unwrap_or_default()).collect()
+    };
+    attributes.list.iter().map(of_one).collect()
+}
+
+#[track_caller]
+fn assert_lossless(mesh: &TriMesh, attributes: &Attributes, what: &str) {
+    let stream = encode(mesh, attributes, &everything());
+    let (decoded, found) = decode(&stream);
+    let positions =
+        |mesh: &TriMesh| -> Vec<_> { mesh.positions().iter().map(|p| p.map(f64::to_bits)).collect() };
+    assert!(positions(mesh) == positions(&decoded), "{what}: positions");
+    assert!(mesh.triangles() == decoded.triangles(), "{what}: triangles");
+    let (wanted, got) = (bits(mesh, attributes), bits(&decoded, &found));
+    for ((wanted, got), attribute) in wanted.iter().zip(&got).zip(&attributes.list) {
+        let differs = wanted.iter().zip(got).position(|(a, b)| a != b);
+        assert_eq!(differs, None, "{what}: {}", attribute.name);
+        assert_eq!(wanted.len(), got.len());
+    }
+    assert!(encode(&decoded, &found, &everything()) == stream, "{what}: other bytes the second time");
+    let mut options = everything();
+    options.keep_order = false;
+    let stream = encode(mesh, attributes, &options);
+    let (decoded, found) = decode(&stream);
+    assert!(encode(&decoded, &found, &options) == stream, "{what}: other bytes without the order");
+}
+
+const SCALARS: [ScalarType; 8] = [
+    ScalarType::I8,
+    ScalarType::U8,
+    ScalarType::I16,
+    ScalarType::U16,
+    ScalarType::I32,
+    ScalarType::U32,
+    ScalarType::F32,
+    ScalarType::F64,
+];
+
+#[test]
+fn every_type_on_every_domain_returns_bit_for_bit() {
+    let mesh = sphere(2);
+    for (i, domain) in [Domain::Vertex, Domain::Corner, Domain::Face].into_iter().enumerate() {
+        for (seed, semantics) in [
+            (0, [Semantic::Generic, Semantic::TexCoord(0)]),
+            (1, [Semantic::Color(0), Semantic::Normal]),
+            (3, [Semantic::Object, Semantic::Generic]),
+        ] {
+            let list = SCALARS.iter().zip(0..).flat_map(|(&scalar, k)| {
+                let make = move |mesh, semantic, s| nasty(mesh, domain, scalar, semantic, s);
+                let mesh = &mesh;
+                semantics.map(|semantic| make(mesh, semantic, 6 * (k + 20 * i as u64) + seed))
+            });
+            assert_lossless(&mesh, &all(list.collect()), &format!("{domain}, {seed}"));
+        }
+    }
+}
+
+#[test]
+fn usual_attributes_return_bit_for_bit() {
+    let (mesh, uv) = atlas(30, 20);
+    assert_lossless(&mesh, &all(vec![uv, colours(&mesh), flat_normals(&mesh), materials(&mesh)]), "atlas");
+    let mesh = sphere(3);
+    let normals: Vec<f32> = mesh.positions().iter().flatten().map(|&x| x as f32).collect();
+    let doubles: Vec<f64> = mesh
+        .positions()
+        .iter()
+        .flat_map(|p| p.map(|x| x / p.iter().map(|x| x * x).sum::<f64>().sqrt()))
+        .collect();
+    let make = |values| Attribute::new("n", Semantic::Normal, Domain::Vertex, 3, values);
+    for values in [Values::F32(normals), Values::F64(doubles)] {
+        assert_lossless(&mesh, &all(vec![make(values)]), "normals");
+    }
+}
+
+#[test]
+fn every_kind_of_mesh_returns_with_attributes() {
+    for (name, mesh) in every_kind() {
+        let mesh = with_loose_things(mesh);
+        let list =
+            [Domain::Vertex, Domain::Corner, Domain::Face].into_iter().zip(0..).flat_map(|(domain, i)| {
+                let make = |scalar, seed| nasty(&mesh, domain, scalar, Semantic::Generic, seed);
+                [make(ScalarType::F32, 2 + i), make(ScalarType::U8, 9 + i), make(ScalarType::F64, 6 * i)]
+            });
+        assert_lossless(&mesh, &all(list.chain([materials(&mesh)]).collect()), name);
+    }
+}
+
+/// A mesh with vertices without triangles and triangles that name a vertex twice.
+fn with_loose_things(mesh: TriMesh) -> TriMesh {
+    let (mut positions, mut triangles) = mesh.into_parts();
+    let n = positions.len() as u32;
+    let first = positions[0];
+    positions.extend([first, first.map(|x| x + 0.001), first.map(|x| x * 0.5), first]);
+    triangles.extend([[n, n, 0], [1, 2, 1], [n + 1, n + 1, n + 1]]);
+    build(positions, triangles)
+}
+
+/// Without `lossless` what lies loose has the values that the same bits give to the surface.
+#[test]
+fn loose_things_have_values_to_their_bits() {
+    let mesh = with_loose_things(sphere(2));
+    let values: Vec<f64> = mesh.positions().iter().map(|p| p[0] + 2.0 * p[1]).collect();
+    let smooth = Attribute::new("s", Semantic::Generic, Domain::Vertex, 1, Values::F64(values.clone()));
+    let attributes = all(vec![smooth, materials(&mesh), colours(&mesh)]);
+    let mut options = everything();
+    options.lossless = false;
+    let (decoded, found) = decode(&encode(&mesh, &attributes, &options));
+    assert_eq!(found.list[0].validate(&decoded), Ok(()));
+    let range = values.iter().fold(0.0, |m: f64, x| m.max(x.abs())) * 2.0;
+    for (v, wanted) in values.iter().enumerate() {
+        let got = found.list[0].number(found.list[0].row(v).unwrap(), 0).unwrap();
+        assert!((got - wanted).abs() < range / 4095.0, "vertex {v}: {got} for {wanted}");
+    }
+    let (wanted, got) = (bits(&mesh, &attributes), bits(&decoded, &found));
+    assert_eq!((&wanted[1], &wanted[2]), (&got[1], &got[2]));
+}
+
+#[test]
+fn profiles_and_cuts_keep_their_promises() {
+    let (mesh, uv) = atlas(20, 12);
+    let attributes = all(vec![uv, colours(&mesh)]);
+    let mut options = everything();
+    let small = encode(&mesh, &attributes, &options);
+    options.profile = Profile::Fast;
+    let wanted = decode(&small);
+    if Profile::Fast.is_supported() {
+        assert_eq!(decode(&encode(&mesh, &attributes, &options)), wanted);
+    }
+    // Before its last chunks the stream has the values of the grid.
+    for cut in (small.len() / 2..small.len()).step_by(13) {
+        let mut decoder = Decoder::new(Limits::default());
+        decoder.push(&small[..cut]).unwrap();
+        let (mesh, attributes) = decoder.preview_with_attributes().unwrap();
+        attributes.list.iter().for_each(|a| assert_eq!(a.validate(&mesh), Ok(()), "{cut} bytes"));
+    }
+}
+
+/// Exact colours need no bytes but those of the passes.
+#[test]
+fn what_is_exact_already_costs_nothing() {
+    let mesh = sphere(3);
+    let mut options = EncodeOptions::default();
+    let attributes = all(vec![colours(&mesh), materials(&mesh)]);
+    let plain = encode(&mesh, &attributes, &options);
+    options.lossless = true;
+    let kinds = |bytes: &[u8]| -> Vec<&str> {
+        let info = lwc::StreamInfo::read(bytes).unwrap().unwrap();
+        info.trailing().iter().map(|t| t.kind.name()).collect()
+    };
+    assert_eq!((kinds(&plain), kinds(&encode(&mesh, &attributes, &options))), (vec![], vec!["exact"]));
+}
