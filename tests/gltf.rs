@@ -642,3 +642,27 @@ fn a_stored_file_is_read() {
     assert_eq!(named(&file, "TEXCOORD_0").domain, Domain::Corner);
     assert_eq!(named(&file, "COLOR_0").domain, Domain::Vertex);
 }
+
+/// Tangents are unit vectors with a sign; what is one already keeps its bits.
+#[test]
+fn tangents_are_written_beside_normals() {
+    let mesh = TriMesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]).unwrap();
+    let exact = [0.267_261_24_f32, 0.534_522_5, 0.801_783_7];
+    let tangents = [&exact[..], &[0.99], &[0.0, 3.0, 4.0, -0.98], &[0.0; 4]].concat();
+    let vertex = |name: &str, semantic, n, values| Attribute::new(name, semantic, Domain::Vertex, n, values);
+    let mut attributes = lwc::mesh::Attributes::default();
+    attributes.list = vec![vertex("TANGENT", Semantic::Generic, 4, Values::F32(tangents))];
+    let write = |attributes: &lwc::mesh::Attributes| {
+        let mut bytes = Vec::new();
+        let report = io::write_with_attributes_to(&mut bytes, &mesh, attributes, Format::Glb).unwrap();
+        (io::read_bytes(&bytes, Format::Glb).unwrap(), report.ignored)
+    };
+    assert_eq!(write(&attributes).1, ["TANGENT"], "they mean nothing alone");
+    let normals = Values::F32([exact, exact, [0.0, 0.0, 2.0]].concat());
+    attributes.list.push(vertex("NORMAL", Semantic::Normal, 3, normals));
+    let (again, ignored) = write(&attributes);
+    assert!(ignored.is_empty());
+    let wanted = [&exact[..], &[1.0], &[0.0, 0.6, 0.8, -1.0], &[1.0, 0.0, 0.0, 1.0]].concat();
+    assert_eq!(named(&again, "TANGENT").values, Values::F32(wanted));
+    assert_eq!(named(&again, "NORMAL").values, Values::F32([exact, exact, [0.0, 0.0, 1.0]].concat()));
+}

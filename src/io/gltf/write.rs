@@ -87,6 +87,7 @@ fn columns(attributes: &Attributes) -> (Vec<Column<'_>>, WriteReport) {
     let mut report = WriteReport::default();
     let mut columns: Vec<Column> = Vec::new();
     let mut num_sets = [0; 2];
+    let has_normals = attributes.list.iter().any(|a| a.semantic == Semantic::Normal && a.num_components == 3);
     for attribute in &attributes.list {
         if first_material(attributes).is_some_and(|material| std::ptr::eq(attribute, material)) {
             continue;
@@ -101,14 +102,18 @@ fn columns(attributes: &Attributes) -> (Vec<Column<'_>>, WriteReport) {
             Semantic::Normal if n == 3 => Some("NORMAL".to_owned()),
             Semantic::TexCoord(_) if n == 2 => Some(next_set(0, "TEXCOORD")),
             Semantic::Color(_) if n == 3 || n == 4 => Some(next_set(1, "COLOR")),
+            _ if is_tangent(attribute) && has_normals => Some(TANGENT.to_owned()),
             // They mean something together with others that are not here.
             _ if is_dependent(&attribute.name) => None,
             _ if n <= 4 => Some(custom_name(&attribute.name)),
             _ => None,
         };
         let is_new = |name: &String| columns.iter().all(|column| column.gltf_name != *name);
-        let written =
-            if is_normal { Some(unit_normals(attribute)) } else { representable(&oriented(attribute, true)) };
+        let written = match gltf_name.as_deref() {
+            Some(TANGENT) => Some(unit_directions(attribute, [1.0, 0.0, 0.0])),
+            _ if is_normal => Some(unit_directions(attribute, UP)),
+            _ => representable(&oriented(attribute, true)),
+        };
         match (gltf_name.filter(is_new), written) {
             (Some(gltf_name), Some(values)) if attribute.num_rows() > 0 => columns.push(Column {
                 attribute,
@@ -133,8 +138,15 @@ fn first_material(attributes: &Attributes) -> Option<&Attribute> {
     attributes.list.iter().find(is_material)
 }
 
+const TANGENT: &str = "TANGENT";
+const UP: [f32; 3] = [0.0, 0.0, 1.0];
+
+fn is_tangent(attribute: &Attribute) -> bool {
+    attribute.name == TANGENT && attribute.num_components == 4
+}
+
 fn is_dependent(name: &str) -> bool {
-    name == "TANGENT" || name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")
+    name == TANGENT || name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")
 }
 
 fn custom_name(name: &str) -> String {
@@ -165,12 +177,20 @@ fn representable(attribute: &Attribute) -> Option<Values> {
     Some(Values::F32(floats.collect::<Option<Vec<f32>>>()?))
 }
 
-/// Directions of length 1, as glTF wants them; what has no direction points up.
-fn unit_normals(attribute: &Attribute) -> Values {
+/// Directions of length 1, as glTF wants them, those that are nearly so as they are; what has no direction has the one
+/// that is given. Behind those of tangents stands a sign.
+fn unit_directions(attribute: &Attribute, other: [f32; 3]) -> Values {
+    /// Lengths that rounding explains.
+    const NEARLY: f64 = 1e-5;
     let unit = |row: usize| {
-        let normal = [0, 1, 2].map(|k| attribute.number(row, k).unwrap_or(0.0));
-        let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
-        if length > 0.0 && length.is_finite() { normal.map(|c| (c / length) as f32) } else { [0.0, 0.0, 1.0] }
+        let number = |k: usize| attribute.number(row, k).unwrap_or(0.0);
+        let direction = [0, 1, 2].map(number);
+        let length = direction.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let is_direction = length > 0.0 && length.is_finite();
+        let length = if (length - 1.0).abs() < NEARLY { 1.0 } else { length };
+        let unit = if is_direction { direction.map(|c| (c / length) as f32) } else { other };
+        let sign = (attribute.num_components > 3).then(|| if number(3) < 0.0 { -1.0 } else { 1.0 });
+        unit.into_iter().chain(sign)
     };
     Values::F32((0..attribute.num_rows()).flat_map(unit).collect())
 }
@@ -397,18 +417,22 @@ impl Writer {
         }))
     }
 
-    /// Writes the rows of a column, for vertices without one zeros, or a direction upwards.
+    /// Writes the rows of a column, for vertices without one zeros, or some direction.
     fn column(&mut self, column: &Column, rows: &[u32]) -> usize {
         let scalar = column.values.scalar_type().unwrap_or(ScalarType::F32);
         let (n, size) = (column.attribute.num_components, scalar.num_bytes());
         let stride = (n * size).next_multiple_of(4);
-        let is_normal = column.attribute.semantic == Semantic::Normal;
+        let missing: &[f32] = match () {
+            () if column.attribute.semantic == Semantic::Normal => &UP,
+            () if column.gltf_name == TANGENT => &[1.0, 0.0, 0.0, 1.0],
+            () => &[],
+        };
         let start = self.begin();
         for &row in rows {
             for k in 0..n {
-                let up = if is_normal && k == 2 { u64::from(1f32.to_bits()) } else { 0 };
+                let other = missing.get(k).map_or(0, |x| u64::from(x.to_bits()));
                 let bits = if row == NO_ROW { None } else { column.values.bits(row as usize * n + k) };
-                self.buffer.extend(&bits.unwrap_or(up).to_le_bytes()[..size]);
+                self.buffer.extend(&bits.unwrap_or(other).to_le_bytes()[..size]);
             }
             self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
         }
