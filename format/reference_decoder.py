@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """A slow decoder of lwc streams, written from SPEC.md alone; section numbers refer to it.
 
-    reference_decoder.py FILE.lwc...      prints a line per pass, as in golden/checksums.txt
-    reference_decoder.py                  checks golden/*.lwc against golden/checksums.txt
+    reference_decoder.py FILE.lwc...      prints lines per pass, as in golden/checksums.txt and attributes.txt
+    reference_decoder.py                  checks golden/*.lwc against these
 
 Needs nothing but Python 3.8.
 """
@@ -1378,9 +1378,12 @@ class Whole:
             else:
                 place.append(len(self.cell))
                 self.cell.append(list(cell))
-        joined = ([place[v] for v in t] for t in mesh.triangle)
+        joined = [[place[v] for v in t] for t in mesh.triangle]
         self.triangle = [t for t in joined if len(set(t)) == 3]
         self.position = self.order = None
+        # Vertices and faces of the surface that these are.
+        self.vertex_source = [v for v in range(len(place)) if v >= len(root) or root[v] == v]
+        self.face_source = [f for f, t in enumerate(joined) if len(set(t)) == 3]
 
     def loose(self, payload):
         coder, counts, ways, links = RangeDecoder(payload), Numbers(), Numbers(), Numbers()
@@ -1447,6 +1450,30 @@ class Whole:
             turned = turns.code(coder, turned) % 3
             corners.append(3 * f + (lowest + turned) % 3)
         self.order = vertices.order, place, corners
+
+    def rows(self, values):
+        """Of each element of the assembled mesh the row of an attribute, or NONE."""
+        vertices = self.order[0] if self.order else range(len(self.cell))
+        corners = self.order[2] if self.order else range(0, 3 * len(self.triangle), 3)
+
+        def corner(c):
+            return 3 * self.face_source[c // 3] + c % 3 if c // 3 < len(self.face_source) else NONE
+
+        if values.declared.domain == OF_VERTICES:
+            places = [self.vertex_source[v] if v < len(self.vertex_source) else NONE for v in vertices]
+        elif values.declared.domain == OF_CORNERS:
+            places = [corner(c // 3 * 3 + (c + k) % 3) for c in corners for k in range(3)]
+        else:
+            places = [NONE if corner(c) == NONE else corner(c) // 3 for c in corners]
+        return [NONE if place == NONE else values.row[place] for place in places]
+
+    def checksum_of_values(self, attributes):
+        """Section 9.2."""
+        crc = 0
+        for values in attributes:
+            for row in self.rows(values):
+                crc = zlib.crc32(b"\0" if row == NONE else b"\1" + values.declared.packed(values.rows[row]), crc)
+        return crc
 
     def checksum(self):
         positions = self.position or [position(self.grid, cell, self.mesh.precision) for cell in self.cell]
@@ -1554,7 +1581,7 @@ class OrderPicker:
 # 4.5 Attributes: what is declared
 
 NORMAL, TEXCOORD, COLOUR = 1, 2, 3
-VERTICES, CORNERS, FACES = range(3)
+OF_VERTICES, OF_CORNERS, OF_FACES = range(3)
 UNIFORM, OCTAHEDRAL, TABLE = range(3)
 TYPES, NAMES = "bBhHiIfd", 8
 
@@ -1578,7 +1605,7 @@ class Declared:
         require(self.semantic <= 6, "the semantic of an attribute")
         self.set = reader.varint() if self.semantic in (TEXCOORD, COLOUR) else 0
         self.domain, flags, self.type, self.components = reader.u8(), reader.u8(), reader.u8(), reader.varint()
-        require(self.domain <= FACES and flags <= 3 and self.type <= NAMES, "the kind of an attribute")
+        require(self.domain <= OF_FACES and flags <= 3 and self.type <= NAMES, "the kind of an attribute")
         require(1 <= self.components <= (1 if self.type == NAMES else 16), "the components of an attribute")
         self.has_missing = flags & 2
         self.coding = reader.u8()
@@ -1726,7 +1753,7 @@ class Values:
         domain, count = self.declared.domain, len(mesh.cell)
         elements = (count, 3 * len(mesh.triangle), len(mesh.triangle))[domain]
         self.row += [NONE] * (elements - len(self.row))
-        if patches == NONE and domain == FACES:
+        if patches == NONE and domain == OF_FACES:
             for f in range(elements):
                 self.row[f] = self.decode_row(self.around_face(f, f), False)
             return
@@ -1734,9 +1761,9 @@ class Values:
         for i, v in enumerate(range(count - number, count)):
             corners, closed = mesh.fan(mesh.corner_of[v])
             patch = NONE if patches == NONE else patches[i]
-            if domain == VERTICES:
-                self.row[v] = self.decode_row(self.around_wedge(v, corners, closed, closed), False)
-            elif domain == CORNERS:
+            if domain == OF_VERTICES:
+                self.row[v] = self.decode_row(self.around_wedge(v, corners, closed), False)
+            elif domain == OF_CORNERS:
                 self.decode_corners(v, corners, closed, patch)
             else:
                 self.decode_star_faces(v, corners, patch)
@@ -1759,7 +1786,7 @@ class Values:
         bounds = sorted({0, *seams, len(corners)})
         for begin, end in zip(bounds, bounds[1:]):
             whole = closed and len(bounds) == 2
-            around = self.around_wedge(v, corners[begin:end], whole, whole and not seams)
+            around = self.around_wedge(v, corners[begin:end], whole)
             row = self.decode_row(around, False)
             for c in corners[begin:end]:
                 self.row[c] = row
@@ -1836,13 +1863,13 @@ class Values:
     def way_from(self, v, u):
         return way(self.mesh.cell[v], self.mesh.cell[u])
 
-    def around_wedge(self, v, corners, closed, seamless):
+    def around_wedge(self, v, corners, closed):
         mesh, around = self.mesh, Around()
         around.closed = closed
         ends = [x for c in corners for x in (next_(c), prev(c))]
         seen = [(mesh.vertex(x), self.at(x)) for x in ends]
         for i, (u, row) in enumerate(seen):
-            repeats = i > 0 and seen[i - 1] == (u, row) or seamless and i == len(seen) - 1 and seen[0] == (u, row)
+            repeats = i > 0 and seen[i - 1] == (u, row) or closed and i == len(seen) - 1 and seen[0] == (u, row)
             if u < v and not repeats:
                 around.join(row, self.way_from(v, u))
         for c in corners:
@@ -2045,7 +2072,7 @@ class Forecasts:
             channels[:2] = 1, 0
         self.order = channels
         self.is_direction = declared.coding == OCTAHEDRAL
-        self.is_texture = declared.semantic == TEXCOORD and declared.channels >= 2
+        self.is_texture = declared.semantic == TEXCOORD
 
     def look(self, around, rows):
         """Whether directions are flipped, and the place of the normal."""
@@ -2118,7 +2145,7 @@ class Forecasts:
             nearest = total_of((x - mean) * u for x, u in zip(v, near)) / total_of(near)
             affine = plane.affine(v + [values[channel] for values in tips]) - mean
             if self.is_direction:
-                special = ((ground[channel] - origin[channel]) - mean) if ground else ZERO
+                special = ((ground[channel] if ground else ZERO) - origin[channel]) - mean
             elif triangles:
                 special = total_of(
                     ((a[channel] + b[channel]) - tip[channel]) - mean for a, b, tip in triangles
@@ -2127,7 +2154,7 @@ class Forecasts:
                 special = ZERO
             features.append(Features(mean, spread, median, nearest, affine, special))
         misfit = ZERO
-        if self.is_texture:
+        if self.is_texture and self.declared.channels >= 2:
             points = ring + tips
             fits = [plane.conformal([p[0] for p in points], [p[1] for p in points], sign) for sign in (1, -1)]
             is_turned = fits[1][1] > fits[0][1]
@@ -2153,12 +2180,11 @@ class ChannelForecast:
         w = self.filter.weight
         expected = mean + self.filter.sum(w, self.f)
         cross_ = w[3] * e[0] + w[4] * e[1]
-        is_fit = models.is_texture and k < 2
-        third = mean + special if is_fit or models.is_direction else median
+        third = mean + special if models.is_texture or models.is_direction else median
         centre = (expected, (mean + affine) + cross_, third + cross_, (mean + near) + cross_)
         self.by_spread, self.by_first = lg(spread), lg(e[0]) if k > 0 else ZERO
         self.by_fits = lg(affine - near)
-        q = lg(misfit) if is_fit else lg(e[1]) if k > 1 else ZERO
+        q = lg(misfit) if models.is_texture and k < 2 else lg(e[1]) if k > 1 else ZERO
         self.cues = [ONE, self.by_spread, by_ring, self.by_fits, self.by_first, q, lg((mean + special) - expected)]
         self.logs = [Single(clamp(sum7(w, self.cues), -4.0, 32.0)) for w in self.scales]
         self.trust = models.trust[j][level(self.by_spread, 1, 16)]
@@ -2293,7 +2319,7 @@ def read_announced(payload):
         glue[pass_] = reader.varint()
     while not reader.is_empty():
         kind = chr(reader.u8())
-        known = kind in "pdatg" or "A" <= kind <= "Z" or kind in [k for k, _ in trailing]
+        known = kind in "pdntag" or "A" <= kind <= "Z" or kind in [k for k, _ in trailing]
         require(not known and len(trailing) < 16, "the announced chunks")
         trailing.append((kind, reader.varint()))
     return glue, trailing
@@ -2337,8 +2363,8 @@ def read_table(payload, grid_precision):
 
 
 def decode(stream):
-    """Yields kind, level and mesh after each pass, "values" and the attributes after each pass if there are any, and
-    in the end the whole mesh if there is more to it."""
+    """Yields kind, level and mesh after each pass, "values" and the attributes after each pass if there are any; at the end the
+    whole mesh if there is more to it, and "end" with the whole mesh and the attributes if there are any."""
     grid = rows = mesh = announced = None
     glue, awaited, whole = Glue(), [], None
     declared, values, known = None, [], set()
@@ -2416,8 +2442,11 @@ def decode(stream):
         else:
             require(not "A" <= kind <= "Z", "unsupported chunk %r" % kind)
         if rows and done == len(rows) and not awaited:
+            whole = whole or Whole(grid, mesh, glue.root)
             if announced:
-                yield "whole", level_, whole or Whole(grid, mesh, glue.root)
+                yield "whole", level_, whole
+            if values:
+                yield "end", level_, (whole, values)
             return
 
 
@@ -2433,6 +2462,10 @@ def lines_of(path):
     for kind, level_, mesh in decode(path.read_bytes()):
         if kind == "values":
             attributes.append("%s %d %08x" % (path.name, len(attributes), checksum_of_rows(mesh)))
+            continue
+        if kind == "end":
+            whole, values = mesh
+            attributes.append("%s end %08x" % (path.name, whole.checksum_of_values(values)))
             continue
         precision = (mesh.mesh if kind == "whole" else mesh).precision
         numbers_ = len(meshes), kind, level_, precision, len(mesh.cell), len(mesh.triangle), mesh.checksum()
