@@ -55,7 +55,10 @@ pub enum AttributeType {
 }
 
 /// Row of an element that has no value.
-pub const LWC_NO_ROW: u32 = NO_ROW;
+pub const LWC_NO_ROW: u32 = u32::MAX;
+
+// The header wants the number itself.
+const _: () = assert!(LWC_NO_ROW == NO_ROW);
 
 /// An attribute: a table of values, and which element has which row of it.
 #[repr(C)]
