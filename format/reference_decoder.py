@@ -2483,10 +2483,10 @@ def main():
     wanted, found = ([], []), ([], [])
     for folder in golden, golden / "fast":
         wanted[0].extend((folder / "checksums.txt").read_text().splitlines()[1:])
+        wanted[1].extend((folder / "attributes.txt").read_text().splitlines())
         for path in sorted(folder.glob("*.lwc")):
             for lines, more in zip(found, lines_of(path)):
                 lines.extend(more)
-    wanted[1].extend((golden / "attributes.txt").read_text().splitlines())
     for lines, expected in zip(found, wanted):
         different = [pair for pair in zip(lines, expected) if pair[0] != pair[1]]
         if different or len(lines) != len(expected):

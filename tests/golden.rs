@@ -165,8 +165,18 @@ fn checksum_of_values(decoder: &Decoder) -> u32 {
 
 #[test]
 fn the_attributes_of_every_golden_stream_decode_to_their_checksums() {
-    let streams = streams();
-    let recorded = std::fs::read_to_string(folder().join("attributes.txt")).unwrap();
+    check_attributes(&streams(), &folder());
+}
+
+#[cfg(feature = "fast")]
+#[test]
+fn the_attributes_of_every_fast_golden_stream_decode_to_their_checksums() {
+    streams();
+    check_attributes(&streams_in(&fast_folder()), &fast_folder());
+}
+
+fn check_attributes(streams: &[(String, Vec<u8>)], folder: &Path) {
+    let recorded = std::fs::read_to_string(folder.join("attributes.txt")).unwrap();
     let found: String = streams.iter().map(|(name, stream)| attribute_lines_of(name, stream)).collect();
     assert_eq!(found, recorded);
     assert!(found.lines().count() > 10);
@@ -297,6 +307,13 @@ mod make {
             ("soup", fast(&soup(30, 60, 5), 9)),
             // Passes with all kinds of streams.
             ("large-torus", fast(&noisy(torus(100, 50), 1, 0.002), 7)),
+            ("torn-grid", {
+                let mesh = noisy(grid(9, 8, bumpy), 15, 0.05);
+                let mut options = EncodeOptions::default();
+                options.profile = lwc::Profile::Fast;
+                let list = attributed::torn(&mesh);
+                encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
+            }),
             ("strip-with-ears", {
                 stream(&noisy(strip(120), 3, 0.02), |o| {
                     (o.partition, o.profile) = (Partition::Algorithm1, lwc::Profile::Fast);

@@ -80,6 +80,9 @@ test('the colours of a model are shown, at every level, and those of the descrip
   assert.ok(coarse.least < -60 && coarse.largest > 60, JSON.stringify(coarse));
   await shot(page, 'coloured-10');
 
+  await page.check('#wire');
+  await page.waitForTimeout(300);
+  await shot(page, 'coloured-10-wire');
   await page.check('#colours');
   await page.waitForFunction(() => globalThis.lwc.geometry.getAttribute('color').itemSize === 3, undefined, {
     timeout: 60_000,

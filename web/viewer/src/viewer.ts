@@ -116,8 +116,7 @@ function start(): void {
   kept.clear();
   live?.geometry.dispose();
   live = undefined;
-  places?.removeFromParent();
-  places = undefined;
+  removePlaces();
   isScrubbed = false;
   message('');
   started = performance.now();
@@ -158,7 +157,7 @@ function show(geometry: RefinedGeometry, refinement: Refinement): void {
   mesh.geometry = geometry;
   if (isOther || loader.attributes) paint();
   if (geometry.scene && (isOther || !places)) {
-    places?.removeFromParent();
+    removePlaces();
     scene.add((places = new SceneGroup(geometry, material)));
   }
   places?.update();
@@ -167,6 +166,12 @@ function show(geometry: RefinedGeometry, refinement: Refinement): void {
   shown = refinement;
   redraw();
   facts();
+}
+
+function removePlaces(): void {
+  places?.removeFromParent();
+  places?.dispose();
+  places = undefined;
 }
 
 function setVisible(isVisible: boolean): void {
