@@ -15,7 +15,7 @@
 #include <stdlib.h>
 
 // Row of an element that has no value.
-#define LWC_NO_ROW NO_ROW
+#define LWC_NO_ROW UINT32_MAX
 
 // How a call ended. The names are those of the errors of the Rust library.
 typedef enum LwcStatus {
