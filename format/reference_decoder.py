@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """A slow decoder of lwc streams, written from SPEC.md alone; section numbers refer to it.
 
-    reference_decoder.py FILE.lwc...      prints a line per pass, as in golden/checksums.txt
-    reference_decoder.py                  checks golden/*.lwc against golden/checksums.txt
+    reference_decoder.py FILE.lwc...      prints lines per pass, as in golden/checksums.txt and attributes.txt
+    reference_decoder.py                  checks golden/*.lwc against these
 
 Needs nothing but Python 3.8.
 """
 
 import collections
+import json
 import math
 import pathlib
 import struct
@@ -491,9 +492,10 @@ def below(mixture, x):
     return total(w * tail((c - x) * s) for c, s, w in zip(*mixture))
 
 
-def total(three):
-    a, b, c = three
-    return (a + b) + c
+def total(experts):
+    """Of three or, for attributes, four."""
+    a, b, *rest = experts
+    return (a + b) + (rest[0] + rest[1] if len(rest) == 2 else rest[0])
 
 
 class Residuals:
@@ -1070,29 +1072,38 @@ def around_refined(mesh, v):
 # 8.2 Filters and consensus
 
 
-def sum3(a, b):
-    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
-
-
 class Filter:
-    def __init__(self):
+    """Of three features, or of five for attributes (8.4)."""
+
+    def __init__(self, weights=(0.5, 0.35, 0.0)):
+        self.weights = weights
         self.start()
 
+    @staticmethod
+    def sum(a, b):
+        """From the first to the last."""
+        sum_ = a[0] * b[0]
+        for x, y in zip(a[1:], b[1:]):
+            sum_ = sum_ + x * y
+        return sum_
+
     def start(self):
-        self.weight = [Single(0.5), Single(0.35), ZERO]
-        self.c = [[Single(10.0 * (i == j)) for j in range(3)] for i in range(3)]
+        n = len(self.weights)
+        self.weight = [Single(w) for w in self.weights]
+        self.c = [[Single(10.0 * (i == j)) for j in range(n)] for i in range(n)]
 
     def learn(self, x, truth):
-        y = [sum3(row, x) for row in self.c]
-        gain = 1 / (1 + sum3(x, y))
-        error = truth - sum3(self.weight, x)
+        n = len(self.weights)
+        y = [self.sum(row, x) for row in self.c]
+        gain = 1 / (1 + self.sum(x, y))
+        error = truth - self.sum(self.weight, x)
         g = [gain * entry for entry in y]
         self.weight = [w + entry * error for w, entry in zip(self.weight, g)]
-        grow = ONE / 0.999 if all(self.c[i][i] < 1e4 for i in range(3)) else ONE
-        for i in range(3):
-            for j in range(i, 3):
+        grow = ONE / 0.999 if all(self.c[i][i] < 1e4 for i in range(n)) else ONE
+        for i in range(n):
+            for j in range(i, n):
                 self.c[i][j] = self.c[j][i] = (self.c[i][j] - y[i] * g[j]) * grow
-        if not all(abs(self.weight[i]) < 1000 and self.c[i][i] > 0 for i in range(3)):
+        if not all(abs(self.weight[i]) < 1000 and self.c[i][i] > 0 for i in range(n)):
             self.start()
 
 
@@ -1134,6 +1145,25 @@ def sum7(a, b):
 
 def level(x, r, n):
     return index((x + 1.5) * r, n)
+
+
+def learn_experts(mixture, logs, scales, cues, trust, y):
+    """Scale models and trust learn where the number was; returns how far each expert was above it."""
+    distances = [c - y for c in mixture.centre]
+    for d, log, weights, cue in zip(distances, logs, scales, cues):
+        error = Single(clamp(log2(abs(d) + 0.35) - log, -3.0, 3.0))
+        step = error * 0.02 / (1 + sum7(cue, cue))
+        for j in range(7):
+            weights[j] += step * cue[j]
+    score = []
+    for d, s, w in zip(distances, mixture.sharpness, mixture.weight):
+        r = 1 + (d * d + ONE / 12) * (s * s)
+        score.append(w * (s / (r * r)))
+    f = 1 / total(score)
+    for i in range(len(trust)):
+        better = trust[i] + (score[i] * f - trust[i]) * 0.02
+        trust[i] = better if better > Single(0.02) else Single(0.02)
+    return distances
 
 
 class VertexGuess:
@@ -1187,20 +1217,8 @@ class VertexGuess:
         self.filter.learn(
             [f[axis] * k for f in around.features], ((y + self.known) - around.mean[axis]) * k
         )
-        distances = [c - y for c in self.mixture.centre]
-        for d, log, weights, cue in zip(distances, self.logs, self.models.scales[self.kind], self.cues):
-            error = Single(clamp(log2(abs(d) + 0.35) - log, -3.0, 3.0))
-            step = error * 0.02 / (1 + sum7(cue, cue))
-            for j in range(7):
-                weights[j] += step * cue[j]
-        score = []
-        for d, s, w in zip(distances, self.mixture.sharpness, self.mixture.weight):
-            r = 1 + (d * d + ONE / 12) * (s * s)
-            score.append(w * (s / (r * r)))
-        f = 1 / total(score)
-        for i in range(3):
-            trust = self.trust[i] + (score[i] * f - self.trust[i]) * 0.02
-            self.trust[i] = trust if trust > Single(0.02) else Single(0.02)
+        scales = self.models.scales[self.kind]
+        distances = learn_experts(self.mixture, self.logs, scales, self.cues, self.trust, y)
         self.position[axis] = y
         self.errors[self.kind] = distances[0]
 
@@ -1360,9 +1378,12 @@ class Whole:
             else:
                 place.append(len(self.cell))
                 self.cell.append(list(cell))
-        joined = ([place[v] for v in t] for t in mesh.triangle)
+        joined = [[place[v] for v in t] for t in mesh.triangle]
         self.triangle = [t for t in joined if len(set(t)) == 3]
         self.position = self.order = None
+        # Vertices and faces of the surface that these are.
+        self.vertex_source = [v for v in range(len(place)) if v >= len(root) or root[v] == v]
+        self.face_source = [f for f, t in enumerate(joined) if len(set(t)) == 3]
 
     def loose(self, payload):
         coder, counts, ways, links = RangeDecoder(payload), Numbers(), Numbers(), Numbers()
@@ -1429,6 +1450,30 @@ class Whole:
             turned = turns.code(coder, turned) % 3
             corners.append(3 * f + (lowest + turned) % 3)
         self.order = vertices.order, place, corners
+
+    def rows(self, values):
+        """Of each element of the assembled mesh the row of an attribute, or NONE."""
+        vertices = self.order[0] if self.order else range(len(self.cell))
+        corners = self.order[2] if self.order else range(0, 3 * len(self.triangle), 3)
+
+        def corner(c):
+            return 3 * self.face_source[c // 3] + c % 3 if c // 3 < len(self.face_source) else NONE
+
+        if values.declared.domain == OF_VERTICES:
+            places = [self.vertex_source[v] if v < len(self.vertex_source) else NONE for v in vertices]
+        elif values.declared.domain == OF_CORNERS:
+            places = [corner(c // 3 * 3 + (c + k) % 3) for c in corners for k in range(3)]
+        else:
+            places = [NONE if corner(c) == NONE else corner(c) // 3 for c in corners]
+        return [NONE if place == NONE else values.row[place] for place in places]
+
+    def checksum_of_values(self, attributes):
+        """Section 9.2."""
+        crc = 0
+        for values in attributes:
+            for row in self.rows(values):
+                crc = zlib.crc32(b"\0" if row == NONE else b"\1" + values.declared.packed(values.rows[row]), crc)
+        return crc
 
     def checksum(self):
         positions = self.position or [position(self.grid, cell, self.mesh.precision) for cell in self.cell]
@@ -1531,6 +1576,642 @@ class OrderPicker:
         self.order.append(n)
         self.picked.add(n)
         return n
+
+
+# 4.5 Attributes: what is declared
+
+NORMAL, TEXCOORD, COLOUR = 1, 2, 3
+OF_VERTICES, OF_CORNERS, OF_FACES = range(3)
+UNIFORM, OCTAHEDRAL, TABLE = range(3)
+TYPES, NAMES = "bBhHiIfd", 8
+
+
+def string(reader):
+    try:
+        return bytes(reader.take(reader.varint())).decode("utf-8")
+    except UnicodeDecodeError:
+        raise Malformed("a string that is not UTF-8")
+
+
+def numbers(reader, count, letter):
+    return struct.unpack("<%d%s" % (count, letter), reader.take(count * struct.calcsize("<" + letter)))
+
+
+class Declared:
+    """An attribute of `d`. `low` and `high` bound all channels; `table` holds rows of values."""
+
+    def __init__(self, reader):
+        self.name, self.semantic = string(reader), reader.u8()
+        require(self.semantic <= 6, "the semantic of an attribute")
+        self.set = reader.varint() if self.semantic in (TEXCOORD, COLOUR) else 0
+        self.domain, flags, self.type, self.components = reader.u8(), reader.u8(), reader.u8(), reader.varint()
+        require(self.domain <= OF_FACES and flags <= 3 and self.type <= NAMES, "the kind of an attribute")
+        require(1 <= self.components <= (1 if self.type == NAMES else 16), "the components of an attribute")
+        self.has_missing = flags & 2
+        self.coding = reader.u8()
+        if self.coding == UNIFORM:
+            bits = reader.u8()
+            require(1 <= bits <= 30 and self.type != NAMES, "the bits of an attribute")
+            self.minimum, (self.step,) = numbers(reader, self.components, "d"), numbers(reader, 1, "d")
+            require(all(map(math.isfinite, (*self.minimum, self.step))), "the range of an attribute")
+            self.low, self.high, self.channels = 0, (1 << bits) - 1, self.components
+        elif self.coding == OCTAHEDRAL:
+            bits = reader.u8()
+            require(2 <= bits <= 30 and self.components == 3 and self.type != NAMES, "the bits of directions")
+            self.high, self.channels = (1 << bits - 1) - 1, 2
+            self.low = -self.high
+        else:
+            require(self.coding == TABLE, "the coding of an attribute")
+            count = reader.varint()
+            require(1 <= count <= 65536, "the table of an attribute")
+            one = lambda: (string(reader),) if self.type == NAMES else numbers(reader, self.components, TYPES[self.type])
+            self.table = [one() for _ in range(count)]
+            self.low, self.high, self.channels = 0, count - 1, 1
+
+    def flip(self, s, t):
+        """The place of the direction with the opposite z."""
+        sign = lambda c: -1 if c < 0 else 1
+        return (sign(s) * (self.high - abs(t)), sign(t) * (self.high - abs(s)))
+
+    def direction(self, s, t):
+        z = self.high - abs(s) - abs(t)
+        x, y = self.flip(s, t) if z < 0 else (s, t)
+        length = math.sqrt(float(x * x) + float(y * y) + float(z * z))
+        return (x / length, y / length, z / length)
+
+    def value(self, row):
+        """The components that the channels of a row stand for."""
+        if self.coding == TABLE:
+            return self.table[row[0]]
+        if self.coding == UNIFORM:
+            value = [low + q * self.step for low, q in zip(self.minimum, row)]
+        else:
+            value = self.direction(*row)
+        if self.type >= 6:
+            return [f32(x) for x in value] if self.type == 6 else value
+        bits = 8 << self.type // 2
+        low, high = (-1 << bits - 1, (1 << bits - 1) - 1) if self.type % 2 == 0 else (0, (1 << bits) - 1)
+        if self.coding == OCTAHEDRAL:
+            value = [x * high for x in value]
+        return [clamp(math.floor(x + 0.5), low, high) for x in value]
+
+    def packed(self, row):
+        """The bytes of a value for the checksum of section 9.2."""
+        value = self.value(row)
+        if self.type == NAMES:
+            name = value[0].encode("utf-8")
+            return struct.pack("<I", len(name)) + name
+        return struct.pack("<%d%s" % (self.components, TYPES[self.type]), *value)
+
+
+def read_attributes(payload):
+    """The attributes and the bytes of the `a` behind each pass."""
+    reader = Reader(payload)
+    count = reader.varint()
+    require(count <= 64, "too many attributes")
+    declared = [Declared(reader) for _ in range(count)]
+    for _ in range(reader.varint()):
+        string(reader)
+    sizes = [reader.varint() for _ in range(reader.varint())]
+    require(reader.is_empty(), "the attributes")
+    return declared, sizes
+
+
+def check_sizes(declared, sizes, rows):
+    """What `L` says must fit the bytes of `d`."""
+    channels = sum(one.channels for one in declared)
+    require(len(sizes) == len(rows), "attributes of other passes")
+    for size, (kind, vertices, _, _) in zip(sizes, rows):
+        require((size > 0) == (kind != "R" and channels > 0), "attributes where there are none")
+        require(channels * vertices <= 1024 * (size + 1), "too many values for the bytes")
+
+
+# 4.6 Scene and 4.7 Materials
+
+
+def read_scene(payload):
+    """Exponents of the meshes; mesh, name and rows of the transform of each instance."""
+    reader = Reader(payload)
+    exponents = struct.unpack("%db" % (count := reader.varint()), reader.take(count))
+    instances = []
+    for _ in range(reader.varint()):
+        mesh, name, form = reader.varint(), string(reader), reader.u8()
+        require(mesh < len(exponents) and form <= 3, "an instance of a scene")
+        places = [(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0)]
+        if form == 1:
+            places = [(*row[:3], x) for row, x in zip(places, numbers(reader, 3, "f"))]
+        elif form:
+            flat = numbers(reader, 12, "f" if form == 2 else "d")
+            places = [flat[0:4], flat[4:8], flat[8:12]]
+        require(all(math.isfinite(x) for row in places for x in row), "the place of an instance")
+        instances.append((mesh, name, places))
+    require(reader.is_empty(), "the scene")
+    return exponents, instances
+
+
+def read_materials(payload):
+    """The document and the images."""
+    reader = Reader(payload)
+    document = json.loads(string(reader))
+    images = [reader.take(reader.varint()) for _ in range(reader.varint())]
+    require(reader.is_empty(), "the materials")
+    return document, images
+
+
+# 7.11 Attributes
+
+
+class Around:
+    """What a row is expected from: rows with the ways to them."""
+
+    def __init__(self):
+        self.ring, self.tips, self.triangles, self.repeatable = [], [], [], []
+        self.normal = (ZERO, ZERO, ZERO)
+        self.closed = self.has_gap = False
+
+    def join(self, row, way_to):
+        if row == NONE:
+            self.has_gap = True
+        else:
+            self.ring.append((row, way_to))
+
+
+class Values:
+    """The rows of one attribute, of all elements there are, and the models they are coded with."""
+
+    def __init__(self, declared):
+        self.declared = declared
+        self.rows, self.roughness = [], []  # of each row its channels
+        self.row = []  # of each element, or NONE
+        self.missing, self.inherited, self.has_seam, self.seam, self.symbols = (Plain() for _ in range(5))
+        self.repeated, self.history = Mixed(3, 0.4, 255), 0
+        self.forecasts = Forecasts(declared)
+
+    def decode(self, coder, mesh, patches):
+        """The values that a pass brought; `patches` is NONE for the base mesh."""
+        self.coder, self.mesh = coder, mesh
+        domain, count = self.declared.domain, len(mesh.cell)
+        elements = (count, 3 * len(mesh.triangle), len(mesh.triangle))[domain]
+        self.row += [NONE] * (elements - len(self.row))
+        if patches == NONE and domain == OF_FACES:
+            for f in range(elements):
+                self.row[f] = self.decode_row(self.around_face(f, f), False)
+            return
+        number = count if patches == NONE else len(patches)
+        for i, v in enumerate(range(count - number, count)):
+            corners, closed = mesh.fan(mesh.corner_of[v])
+            patch = NONE if patches == NONE else patches[i]
+            if domain == OF_VERTICES:
+                self.row[v] = self.decode_row(self.around_wedge(v, corners, closed), False)
+            elif domain == OF_CORNERS:
+                self.decode_corners(v, corners, closed, patch)
+            else:
+                self.decode_star_faces(v, corners, patch)
+
+    def at(self, c):
+        """The row at a corner."""
+        return self.row[(self.mesh.vertex(c), c, c // 3)[self.declared.domain]]
+
+    def plain(self, model, context):
+        return model.code(self.coder, context)
+
+    # Corners
+
+    def decode_corners(self, v, corners, closed, patch):
+        exceptions = [] if patch == NONE else self.inherit(v, corners, patch)
+        seams = self.decode_seams(v, corners, closed)
+        if closed and seams:
+            turn = seams[0]
+            corners, seams = corners[turn:] + corners[:turn], [i - turn for i in seams]
+        bounds = sorted({0, *seams, len(corners)})
+        for begin, end in zip(bounds, bounds[1:]):
+            whole = closed and len(bounds) == 2
+            around = self.around_wedge(v, corners[begin:end], whole)
+            row = self.decode_row(around, False)
+            for c in corners[begin:end]:
+                self.row[c] = row
+        for c, before in exceptions:
+            self.row[c] = self.decode_row(self.around_exception(v, c, before, corners), True)
+
+    def inherit(self, v, corners, patch):
+        """Gives the star what the patch had; the corners where that is wrong, with what they would have had."""
+        edges, start, is_ear = patch.edges, patch.start(), not patch.faces
+        taken = []
+        for i in range(len(corners)):
+            e = edges[(start + i) % len(edges)]
+            taken.append((self.row[prev(e)], self.row[next_(e)]) if is_ear else (self.row[next_(e)], self.row[prev(e)]))
+        for c, (first, second) in zip(corners, taken):
+            self.row[next_(c)], self.row[prev(c)] = first, second
+
+        def is_cut_off(i):
+            if is_ear or patch.open != CLOSED and i + 1 == len(corners):
+                return False
+            e, f = (edges[(start + k) % len(edges)] for k in (i, i + 1))
+            return e // 3 == f // 3
+
+        cut_off = [is_cut_off(i) for i in range(len(corners))]
+        torn = sum(cut and self.fit(v, c, prev(c)) == 1 for cut, c in zip(cut_off, corners))
+        exceptions = []
+        if not self.plain(self.inherited, min(torn, 3)):
+            for cut, own in zip(cut_off, corners):
+                for c, is_second in ((next_(own), False), (prev(own), True)):
+                    context = 4 + 3 * (is_second and cut) + self.fit(v, own, c)
+                    if not self.plain(self.inherited, context):
+                        exceptions.append((c, self.row[c]))
+        for c, _ in exceptions:
+            self.row[c] = NONE
+        return exceptions
+
+    def fit(self, v, own, c):
+        mesh = self.mesh
+        o = mesh.across[own]
+        if o == NONE or mesh.vertex(o) > v:
+            return 2
+        outside = next_(o) if mesh.vertex(next_(o)) == mesh.vertex(c) else prev(o)
+        return int(self.row[outside] != self.row[c])
+
+    def decode_seams(self, v, corners, closed):
+        ends = []
+        for i in range(0 if closed else 1, len(corners)):
+            before, after = self.row[prev(corners[i - 1])], self.row[next_(corners[i])]
+            unknown = self.mesh.vertex(next_(corners[i])) >= v or (before == NONE) != (after == NONE)
+            ends.append((i, 2 if unknown else int(before != after)))
+        seams = []
+        context = min(sum(end == 1 for _, end in ends), 3) * 2 + closed
+        if self.plain(self.has_seam, context):
+            for i, end in ends:
+                if self.plain(self.seam, end * 3 + min(len(seams), 2)):
+                    seams.append(i)
+        return seams
+
+    # Faces
+
+    def decode_star_faces(self, v, corners, patch):
+        edges, start = patch.edges, patch.start()
+        taken = [self.row[edges[(start + i) % len(edges)] // 3] for i in range(len(corners))]
+        for c, row in zip(corners, taken):
+            self.row[c // 3] = row
+        even = len(set(taken)) == 1
+        if not self.plain(self.inherited, 10 + even):
+            for c, row in zip(corners, taken):
+                if not self.plain(self.inherited, 12 + even):
+                    around = self.around_face(c // 3, NONE, v, row)
+                    self.row[c // 3] = self.decode_row(around, True)
+
+    # 8.4 Around
+
+    def way_from(self, v, u):
+        return way(self.mesh.cell[v], self.mesh.cell[u])
+
+    def around_wedge(self, v, corners, closed):
+        mesh, around = self.mesh, Around()
+        around.closed = closed
+        ends = [x for c in corners for x in (next_(c), prev(c))]
+        seen = [(mesh.vertex(x), self.at(x)) for x in ends]
+        for i, (u, row) in enumerate(seen):
+            repeats = i > 0 and seen[i - 1] == (u, row) or closed and i == len(seen) - 1 and seen[0] == (u, row)
+            if u < v and not repeats:
+                around.join(row, self.way_from(v, u))
+        for c in corners:
+            a, b, o = next_(c), prev(c), mesh.across[c]
+            area = cross(self.way_from(v, mesh.vertex(a)), self.way_from(v, mesh.vertex(b)))
+            around.normal = add(around.normal, area)
+            if o == NONE or not all(mesh.vertex(x) < v for x in (a, b, o)):
+                continue
+            rows = self.at(a), self.at(b), self.at(o)
+            if NONE not in rows and self.at(prev(o)) == rows[0] and self.at(next_(o)) == rows[1]:
+                around.tips.append((rows[2], self.way_from(v, mesh.vertex(o))))
+                around.triangles.append(rows)
+        return around
+
+    def area(self, f):
+        a, b, c = (self.mesh.vertex(3 * f + i) for i in range(3))
+        return cross(self.way_from(a, b), self.way_from(a, c))
+
+    def around_exception(self, v, c, before, star):
+        mesh, around = self.mesh, Around()
+        here = mesh.vertex(c)
+        own, far = (next_(c), prev(c)) if mesh.vertex(next_(c)) == v else (prev(c), next_(c))
+        for x in (own, far):
+            around.join(self.row[x], self.way_from(here, mesh.vertex(x)))
+        for o in star:
+            if o != own and self.row[o] == self.row[own]:
+                for x in (next_(o), prev(o)):
+                    if self.row[x] != NONE and mesh.vertex(x) != here:
+                        around.tips.append((self.row[x], self.way_from(here, mesh.vertex(x))))
+        around.repeatable.append(before)
+        for turn in (next_, prev):
+            d = mesh.swing(c, turn)
+            for _ in range(8):
+                if d in (NONE, c):
+                    break
+                if max(mesh.triangle[d // 3]) <= v:
+                    around.repeatable.append(self.row[d])
+                d = mesh.swing(d, turn)
+        around.normal = self.area(c // 3)
+        return around
+
+    def middle(self, f, seen_from):
+        total_ = (ZERO, ZERO, ZERO)
+        for u in self.mesh.triangle[f]:
+            total_ = add(total_, self.way_from(seen_from, u))
+        return scaled(total_, ONE / 3)
+
+    def around_face(self, f, known, v=NONE, inherited=None):
+        """In the base mesh the faces below `known` have rows, in a star those without a vertex above v."""
+        mesh, around = self.mesh, Around()
+        if inherited is not None:
+            around.join(inherited, (ZERO, ZERO, ZERO))
+        seen_from = mesh.vertex(3 * f)
+        middle = self.middle(f, seen_from)
+        for c in range(3 * f, 3 * f + 3):
+            o = mesh.across[c]
+            if o != NONE and (o // 3 < known if inherited is None else mesh.vertex(o) <= v):
+                around.join(self.row[o // 3], sub(self.middle(o // 3, seen_from), middle))
+        around.normal = self.area(f)
+        return around
+
+    # Rows
+
+    def decode_row(self, around, is_exception):
+        coder = self.coder
+        if self.declared.has_missing:
+            context = 0 if not around.has_gap else 1 if around.ring else 2
+            if self.plain(self.missing, context):
+                return NONE
+        counts, first = collections.Counter(), {}
+        for row in [row for row, _ in around.ring] + [row for row in around.repeatable if row != NONE]:
+            channels = self.rows[row]
+            if channels in first or len(first) < 16:
+                counts[channels] += 1
+                first.setdefault(channels, row)
+        found = sorted(first, key=lambda channels: -counts[channels])
+        for k, channels in enumerate(found[:3]):
+            which = k + 3 * is_exception
+            contexts = [
+                which * 64 + min(counts[channels], 7) * 8 + min(len(found), 7),
+                which * 64 + self.history % 64,
+                k * 16 + min(len(around.ring), 7) * 2 + around.closed,
+            ]
+            if self.repeated.code(coder, contexts, [], which):
+                self.history = 2 * self.history + 1
+                return first[channels]
+        if found:
+            self.history *= 2
+        if self.declared.coding == TABLE:
+            channels, roughness = (self.decode_symbol(),), 0
+        else:
+            channels, roughness = self.forecasts.decode(coder, around, self.rows, self.roughness)
+        self.rows.append(channels)
+        self.roughness.append(roughness)
+        return len(self.rows) - 1
+
+    def decode_symbol(self):
+        count = self.declared.high + 1
+        n = (count - 1).bit_length()
+        m, node = min(n, 8), 1
+        for _ in range(m):
+            node = 2 * node + self.plain(self.symbols, node)
+        i = (node - (1 << m) << n - m) + self.coder.raw(n - m)
+        require(i < count, "a symbol beyond its table")
+        return i
+
+    def numbers(self):
+        """For the checksum of rows in section 9.2."""
+        for row in self.row:
+            yield from (0xFFFFFFFF,) if row == NONE else (x & 0xFFFFFFFF for x in self.rows[row])
+
+
+# 8.4 Attributes
+
+
+def total_of(numbers_):
+    sum_ = ZERO
+    for x in numbers_:
+        sum_ = sum_ + x
+    return sum_
+
+
+def lg(x):
+    return log2(abs(x) + 0.35)
+
+
+class Plane:
+    """Weighted points of the ring and the tips in the plane of the surface."""
+
+    def __init__(self, around):
+        self.ways = [p for _, p in around.ring + around.tips]
+        length = root(dot(around.normal, around.normal))
+        n = scaled(around.normal, 1 / length) if length else (ZERO, ZERO, ONE)
+        sizes = [abs(x) for x in n]
+        k = 0 if sizes[0] <= sizes[1] and sizes[0] <= sizes[2] else 1 if sizes[1] <= sizes[2] else 2
+        e = cross(n, tuple(ONE if i == k else ZERO for i in range(3)))
+        e = scaled(e, 1 / root(dot(e, e)))
+        g = cross(n, e)
+        x, y = [dot(p, e) for p in self.ways], [dot(p, g) for p in self.ways]
+        self.w = [1 / (dot(p, p) + 0.25) for p in self.ways]
+        self.W = total_of(self.w)
+        share = 1 / self.W if self.W else ZERO
+        self.X = total_of(w * x for w, x in zip(self.w, x)) * share
+        self.Y = total_of(w * y for w, y in zip(self.w, y)) * share
+        self.x, self.y = [x - self.X for x in x], [y - self.Y for y in y]
+        points = list(zip(self.w, self.x, self.y))
+        self.XX = total_of(w * x * x for w, x, y in points)
+        self.XY = total_of(w * x * y for w, x, y in points)
+        self.YY = total_of(w * y * y for w, x, y in points)
+
+    def mean(self, a):
+        return total_of(w * a for w, a in zip(self.w, a)) / self.W
+
+    def slopes(self, a, mean):
+        d = [w * (a - mean) for w, a in zip(self.w, a)]
+        return total_of(d * x for d, x in zip(d, self.x)), total_of(d * y for d, y in zip(d, self.y))
+
+    def affine(self, a):
+        mean = self.mean(a)
+        a_x, a_y = self.slopes(a, mean)
+        ridge = (self.XX + self.YY) * 2e-3 + 1e-9
+        xx, yy = self.XX + ridge, self.YY + ridge
+        D = xx * yy - self.XY * self.XY
+        if not D > 0:
+            return mean
+        return mean - (((a_x * yy - a_y * self.XY) / D) * self.X + ((a_y * xx - a_x * self.XY) / D) * self.Y)
+
+    def conformal(self, a, b, sign):
+        """Values of both, what is explained, misfit."""
+        mean_a, mean_b = self.mean(a), self.mean(b)
+        T = self.XX + self.YY
+        if not T > 0:
+            return (mean_a, mean_b), ZERO, ZERO
+        (a_x, a_y), (b_x, b_y) = self.slopes(a, mean_a), self.slopes(b, mean_b)
+        re, im = (a_x + sign * b_y) / T, (b_x - sign * a_y) / T
+        values = mean_a - (re * self.X - im * (sign * self.Y)), mean_b - (re * (sign * self.Y) + im * self.X)
+        explained = (re * re + im * im) * T
+        u, v = [a - mean_a for a in a], [b - mean_b for b in b]
+        all_ = total_of(w * (u * u + v * v) for w, u, v in zip(self.w, u, v))
+        return values, explained, root(max(all_ - explained, ZERO) / self.W)
+
+
+Features = collections.namedtuple("Features", "mean spread median near affine special")
+
+
+class Forecasts:
+    """Expects the channels of new rows, learns from them."""
+
+    def __init__(self, declared):
+        self.declared = declared
+        scale = [Single(w) for w in (-0.4, 0.35, 0.3, 0.1, 0.1, 0.0, 0.05)]
+        weights = (0.3, 0.4, 0.1, 0.0, 0.0)
+        self.filters = [[Filter(weights) for _ in range(4)] for _ in range(8)]
+        self.scales = [[list(scale) for _ in range(4)] for _ in range(4)]
+        self.trust = [[[ONE / 4] * 4 for _ in range(16)] for _ in range(4)]
+        self.residuals = Residuals()
+        self.mirrored, self.last = ZERO, None
+        channels = list(range(declared.channels))
+        if declared.semantic == COLOUR and len(channels) >= 3:
+            channels[:2] = 1, 0
+        self.order = channels
+        self.is_direction = declared.coding == OCTAHEDRAL
+        self.is_texture = declared.semantic == TEXCOORD
+
+    def look(self, around, rows):
+        """Whether directions are flipped, and the place of the normal."""
+        if not self.is_direction:
+            return False, None
+        z = total_of(f32(self.declared.direction(*rows[row])[2]) for row, _ in around.ring)
+        square = dot(around.normal, around.normal)
+        length = root(square)
+        if length > 0:
+            z = z + around.normal[2] / length
+        flipped = z < 0
+        if not square > 0:
+            return flipped, None
+        x, y, z = around.normal
+        z = -z if flipped else z
+        k = self.declared.high / (abs(x) + abs(y) + abs(z))
+        ground = x * k, y * k
+        return flipped, self.declared.flip(*ground) if z < 0 else ground
+
+    def decode(self, coder, around, rows, roughness):
+        declared = self.declared
+        flipped, ground = self.look(around, rows)
+        view = lambda row: declared.flip(*row) if flipped else row
+        n = len(around.ring)
+        misfit = ZERO
+        if n:
+            origin = view(rows[around.ring[0][0]])
+            seen = lambda row: [Single(q - o) for q, o in zip(view(rows[row]), origin)]
+            features, misfit = self.features(around, seen, origin, ground)
+        else:
+            width = declared.high - declared.low
+            if ground:
+                origin, spread = [int(x) for x in ground], Single(declared.high) * 0.05
+            else:
+                middle = declared.low + width // 2
+                origin = view(self.last) if self.last else (middle,) * declared.channels
+                spread = Single(width) * 0.125
+            features = [Features(ZERO, spread, ZERO, ZERO, ZERO, ZERO)] * declared.channels
+
+        if around.closed:
+            class_ = min(max(n, 4), 7) - 4
+        else:
+            class_ = (5 if around.tips else 4) if n <= 2 else min(n, 4) + 3
+        by_ring = Single(sum(roughness[row] for row, _ in around.ring)) / 8 / n if n else Single(3)
+        row, errors = [0] * declared.channels, []
+        for k, channel in enumerate(self.order):
+            here = ChannelForecast(self, features[channel], k, class_, by_ring, errors, misfit)
+            x = here.decode(coder, origin[channel])
+            require(declared.low <= x <= declared.high, "a value beyond its range")
+            errors.append(here.learn(Single(x - origin[channel])))
+            row[channel] = x
+        mean_error = total_of(abs(e) for e in errors) / declared.channels
+        self.last = tuple(view(row))
+        return self.last, int(clamp(log2(mean_error + 0.35) * 8, -120, 120))
+
+    def features(self, around, seen, origin, ground):
+        """Of each channel, and the misfit."""
+        plane = Plane(around)
+        ring, tips = [seen(row) for row, _ in around.ring], [seen(row) for row, _ in around.tips]
+        triangles = [[seen(row) for row in rows] for rows in around.triangles]
+        near = [1 / (root(dot(p, p)) + 0.25) for _, p in around.ring]
+        share = ONE / len(ring)
+        features = []
+        for channel in range(self.declared.channels):
+            v = [values[channel] for values in ring]
+            mean = total_of(v) * share
+            ordered, half = sorted(v), len(v) // 2
+            median = ordered[half] if len(v) % 2 else (ordered[half] + ordered[half - 1]) * 0.5
+            spread = total_of(abs(x - mean) for x in v) * share
+            nearest = total_of((x - mean) * u for x, u in zip(v, near)) / total_of(near)
+            affine = plane.affine(v + [values[channel] for values in tips]) - mean
+            if self.is_direction:
+                special = ((ground[channel] if ground else ZERO) - origin[channel]) - mean
+            elif triangles:
+                special = total_of(
+                    ((a[channel] + b[channel]) - tip[channel]) - mean for a, b, tip in triangles
+                ) * (ONE / len(triangles))
+            else:
+                special = ZERO
+            features.append(Features(mean, spread, median, nearest, affine, special))
+        misfit = ZERO
+        if self.is_texture and self.declared.channels >= 2:
+            points = ring + tips
+            fits = [plane.conformal([p[0] for p in points], [p[1] for p in points], sign) for sign in (1, -1)]
+            is_turned = fits[1][1] > fits[0][1]
+            if len(points) > 2:
+                self.mirrored = self.mirrored + ((1 if is_turned else -1) - self.mirrored) * 0.02
+            else:
+                is_turned = self.mirrored > 0
+            values, _, misfit = fits[is_turned]
+            spread = (features[0].spread + features[1].spread) * 0.5
+            for i in range(2):
+                features[i] = features[i]._replace(special=values[i] - features[i].mean, spread=spread)
+        return features, misfit
+
+
+class ChannelForecast:
+    def __init__(self, models, features, k, class_, by_ring, errors, misfit):
+        j = min(k, 3)
+        self.features, self.k, self.class_, self.by_ring = features, k, class_, by_ring
+        self.filter, self.scales, self.residuals = models.filters[class_][j], models.scales[j], models.residuals
+        e = (errors[::-1] + [ZERO, ZERO])[:2]
+        mean, spread, median, near, affine, special = features
+        self.f = [near, affine, special, *e]
+        w = self.filter.weight
+        expected = mean + self.filter.sum(w, self.f)
+        cross_ = w[3] * e[0] + w[4] * e[1]
+        third = mean + special if models.is_texture or models.is_direction else median
+        centre = (expected, (mean + affine) + cross_, third + cross_, (mean + near) + cross_)
+        self.by_spread, self.by_first = lg(spread), lg(e[0]) if k > 0 else ZERO
+        self.by_fits = lg(affine - near)
+        q = lg(misfit) if models.is_texture and k < 2 else lg(e[1]) if k > 1 else ZERO
+        self.cues = [ONE, self.by_spread, by_ring, self.by_fits, self.by_first, q, lg((mean + special) - expected)]
+        self.logs = [Single(clamp(sum7(w, self.cues), -4.0, 32.0)) for w in self.scales]
+        self.trust = models.trust[j][level(self.by_spread, 1, 16)]
+        self.mixture = Mixture(
+            [Single(clamp(c, -1e9, 1e9)) for c in centre],
+            [exp2(-log) * (ONE / 0.85) for log in self.logs],
+            list(self.trust),
+        )
+
+    def decode(self, coder, origin):
+        peaks = [w * s for _, s, w in zip(*self.mixture)]
+        larger = lambda a, b: b if peaks[b] > peaks[a] else a
+        best = larger(larger(0, 1), larger(2, 3))
+        contexts = (
+            level(self.by_ring, 2, 16) * 16 + level(self.by_spread, 1, 16),
+            (self.class_ * 8 + (level(self.by_first, 1, 8) if self.k > 0 else 0)) * 4 + level(self.by_fits, 0.5, 4),
+        )
+        sign = 2 * self.class_ + (self.f[0] < 0)
+        kind = min(self.k, 2)
+        return self.residuals.code(coder, origin, self.mixture, best, self.logs[best], kind, contexts, sign)
+
+    def learn(self, y):
+        """Returns the error."""
+        u = 1 / (self.features.spread + 1)
+        self.filter.learn([f * u for f in self.f], (y - self.features.mean) * u)
+        distances = learn_experts(self.mixture, self.logs, self.scales, [self.cues] * 4, self.trust, y)
+        return -distances[0]
 
 
 # 3 Framing and 4 header chunks
@@ -1638,7 +2319,7 @@ def read_announced(payload):
         glue[pass_] = reader.varint()
     while not reader.is_empty():
         kind = chr(reader.u8())
-        known = kind in "pdatg" or "A" <= kind <= "Z" or kind in [k for k, _ in trailing]
+        known = kind in "pdntag" or "A" <= kind <= "Z" or kind in [k for k, _ in trailing]
         require(not known and len(trailing) < 16, "the announced chunks")
         trailing.append((kind, reader.varint()))
     return glue, trailing
@@ -1682,23 +2363,41 @@ def read_table(payload, grid_precision):
 
 
 def decode(stream):
-    """Yields kind, level and mesh after each pass, and in the end the whole mesh if there is more to it."""
+    """Yields kind, level and mesh after each pass, "values" and the attributes after each pass if there are any; at the end the
+    whole mesh if there is more to it, and "end" with the whole mesh and the attributes if there are any."""
     grid = rows = mesh = announced = None
     glue, awaited, whole = Glue(), [], None
+    declared, values, known = None, [], set()
     level_, done = 0, 0
     connectivity, coordinates, refinement = ConnectivityModels(), (GuessModels(), Residuals()), (GuessModels(), Mixed(4, 0.4, 250))
     ahead = []
     for kind, payload in chunks(stream, ahead):
         if awaited and kind == awaited[0][0]:
             require(len(payload) == awaited.pop(0)[1], "a chunk differs from its announcement")
-            if kind == "g":
+            if kind == "a":
+                coder = RangeDecoder(payload)
+                for one in values:
+                    one.decode(coder, mesh, patches)
+                coder.check_end()
+                yield "values", level_, values
+            elif kind == "g":
                 glue.decode(payload, mesh)
+            elif kind == "m":
+                read_materials(payload)
             elif kind in "ixo":
                 whole = whole or Whole(grid, mesh, glue.root)
                 {"i": whole.loose, "x": whole.exact, "o": whole.ordered}[kind](payload)
         elif kind == "t" and rows is None:
             require(announced is None, "a chunk out of order")
             announced = read_announced(payload)
+        elif kind in "dnm" and rows is None:
+            require(kind not in known, "a chunk out of order")
+            known.add(kind)
+            if kind == "d":
+                declared = read_attributes(payload)
+                values = [Values(one) for one in declared[0]]
+            else:
+                {"n": read_scene, "m": read_materials}[kind](payload)
         elif kind == "H":
             require(grid is None, "a chunk out of order")
             grid = read_grid(payload)
@@ -1709,12 +2408,14 @@ def decode(stream):
             rows, precision = read_table(payload, grid[0])
             ahead.extend(rows)
             require(all(i < len(rows) for i in (announced or ({}, []))[0]), "glue behind no pass")
+            if declared:
+                check_sizes(*declared, rows)
         elif kind in "BSR":
             require(rows is not None and not awaited, "a chunk out of order")
             _, vertices, faces, _ = rows[done]
             coder = Streams(payload, vertices) if profile and kind != "B" else RangeDecoder(payload)
             if kind == "B":
-                mesh = Base(coder, vertices, faces, precision).mesh
+                mesh, patches = Base(coder, vertices, faces, precision).mesh, NONE
             elif kind == "S":
                 level_ += 1
                 patches = Connectivity(coder, connectivity, mesh, vertices).patches
@@ -1731,39 +2432,66 @@ def decode(stream):
             coder.check_end()
             done += 1
             yield {"B": "base", "S": "split", "R": "refine"}[kind], level_, mesh
+            if values and kind != "R":
+                awaited = [("a", declared[1][done - 1])]
+            elif values:
+                yield "values", level_, values
             if announced:
-                awaited = [("g", announced[0][done - 1])] if done - 1 in announced[0] else []
+                awaited += [("g", announced[0][done - 1])] if done - 1 in announced[0] else []
                 awaited += announced[1] if done == len(rows) else []
         else:
             require(not "A" <= kind <= "Z", "unsupported chunk %r" % kind)
         if rows and done == len(rows) and not awaited:
+            whole = whole or Whole(grid, mesh, glue.root)
             if announced:
-                yield "whole", level_, whole or Whole(grid, mesh, glue.root)
+                yield "whole", level_, whole
+            if values:
+                yield "end", level_, (whole, values)
             return
 
 
+def checksum_of_rows(values):
+    """Section 9.2."""
+    flat = [number for one in values for number in one.numbers()]
+    return zlib.crc32(struct.pack("<%dI" % len(flat), *flat))
+
+
 def lines_of(path):
-    for i, (kind, level_, mesh) in enumerate(decode(path.read_bytes())):
+    """Lines as in checksums.txt and as in attributes.txt."""
+    meshes, attributes = [], []
+    for kind, level_, mesh in decode(path.read_bytes()):
+        if kind == "values":
+            attributes.append("%s %d %08x" % (path.name, len(attributes), checksum_of_rows(mesh)))
+            continue
+        if kind == "end":
+            whole, values = mesh
+            attributes.append("%s end %08x" % (path.name, whole.checksum_of_values(values)))
+            continue
         precision = (mesh.mesh if kind == "whole" else mesh).precision
-        counts = len(mesh.cell), len(mesh.triangle)
-        yield "%s %d %s %d %d %d %d %08x" % (path.name, i, kind, level_, precision, *counts, mesh.checksum())
+        numbers_ = len(meshes), kind, level_, precision, len(mesh.cell), len(mesh.triangle), mesh.checksum()
+        meshes.append("%s %d %s %d %d %d %d %08x" % (path.name, *numbers_))
+    return meshes, attributes
 
 
 def main():
     if sys.argv[1:]:
         for name in sys.argv[1:]:
-            for line in lines_of(pathlib.Path(name)):
+            for line in sum(lines_of(pathlib.Path(name)), []):
                 print(line, flush=True)
         return
     golden = pathlib.Path(__file__).parent / "golden"
-    wanted, found = [], []
+    wanted, found = ([], []), ([], [])
     for folder in golden, golden / "fast":
-        wanted += (folder / "checksums.txt").read_text().splitlines()[1:]
-        found += [line for path in sorted(folder.glob("*.lwc")) for line in lines_of(path)]
-    different = [pair for pair in zip(found, wanted) if pair[0] != pair[1]]
-    if different or len(found) != len(wanted):
-        sys.exit("different: %r, %d lines instead of %d" % (different[:1], len(found), len(wanted)))
-    print("all %d meshes have the checksums of golden/checksums.txt" % len(found))
+        wanted[0].extend((folder / "checksums.txt").read_text().splitlines()[1:])
+        wanted[1].extend((folder / "attributes.txt").read_text().splitlines())
+        for path in sorted(folder.glob("*.lwc")):
+            for lines, more in zip(found, lines_of(path)):
+                lines.extend(more)
+    for lines, expected in zip(found, wanted):
+        different = [pair for pair in zip(lines, expected) if pair[0] != pair[1]]
+        if different or len(lines) != len(expected):
+            sys.exit("different: %r, %d lines instead of %d" % (different[:1], len(lines), len(expected)))
+    print("all %d meshes and %d sets of attributes have the checksums of golden" % tuple(map(len, found)))
 
 
 if __name__ == "__main__":

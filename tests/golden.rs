@@ -12,6 +12,7 @@ mod common;
 
 use common::chunks;
 use common::valid::assert_valid;
+use lwc::mesh::ScalarType;
 use lwc::{Decoder, Limits, PassKind, StreamInfo};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -127,18 +128,55 @@ fn attribute_lines_of(name: &str, stream: &[u8]) -> String {
     for (pass, end) in info.passes().iter().map(|pass| pass.end as usize).enumerate() {
         let mut decoder = Decoder::new(Limits::default());
         decoder.push(&stream[..end]).unwrap();
-        let mesh = decoder.mesh().unwrap().to_tri_mesh();
-        let attributes = decoder.attributes();
+        let (mesh, attributes) = decoder.to_tri_mesh_with_attributes().unwrap();
         assert!(attributes.list.iter().all(|attribute| attribute.validate(&mesh).is_ok()), "{name}");
         writeln!(lines, "{name} {pass} {:08x}", decoder.attribute_checksum()).unwrap();
     }
+    let mut decoder = Decoder::new(Limits::default());
+    decoder.push(stream).unwrap();
+    writeln!(lines, "{name} end {:08x}", checksum_of_values(&decoder)).unwrap();
     lines
+}
+
+/// Section 9.2: what the elements of the assembled mesh have.
+fn checksum_of_values(decoder: &Decoder) -> u32 {
+    let (mesh, attributes) = decoder.to_tri_mesh_with_attributes().unwrap();
+    let mut hasher = crc32fast::Hasher::new();
+    for attribute in &attributes.list {
+        for element in 0..attribute.domain.num_elements(&mesh) {
+            let Some(row) = attribute.row(element) else {
+                hasher.update(&[0]);
+                continue;
+            };
+            hasher.update(&[1]);
+            if let Some(names) = attribute.values.names() {
+                hasher.update(&(names[row].len() as u32).to_le_bytes());
+                hasher.update(names[row].as_bytes());
+            }
+            let size = attribute.values.scalar_type().map_or(0, ScalarType::num_bytes);
+            let n = attribute.num_components;
+            for bits in (row * n..(row + 1) * n).filter_map(|k| attribute.values.bits(k)) {
+                hasher.update(&bits.to_le_bytes()[..size]);
+            }
+        }
+    }
+    hasher.finalize()
 }
 
 #[test]
 fn the_attributes_of_every_golden_stream_decode_to_their_checksums() {
-    let streams = streams();
-    let recorded = std::fs::read_to_string(folder().join("attributes.txt")).unwrap();
+    check_attributes(&streams(), &folder());
+}
+
+#[cfg(feature = "fast")]
+#[test]
+fn the_attributes_of_every_fast_golden_stream_decode_to_their_checksums() {
+    streams();
+    check_attributes(&streams_in(&fast_folder()), &fast_folder());
+}
+
+fn check_attributes(streams: &[(String, Vec<u8>)], folder: &Path) {
+    let recorded = std::fs::read_to_string(folder.join("attributes.txt")).unwrap();
     let found: String = streams.iter().map(|(name, stream)| attribute_lines_of(name, stream)).collect();
     assert_eq!(found, recorded);
     assert!(found.lines().count() > 10);
@@ -166,6 +204,10 @@ fn the_golden_streams_cover_the_syntax() {
             i > 0 && row.size > 0 && row.size == touched.div_ceil(64) - 1
         };
         let exact = |head: &[u8]| chunks.iter().any(|c| c.kind == b'x' && c.payload.starts_with(head));
+        let is_in_front = |chunks: &[chunks::Chunk], kind| {
+            let place = |kind| chunks.iter().position(|c| c.kind == kind);
+            place(kind).is_some_and(|m| Some(m) < place(b'L'))
+        };
         let last_split = kinds.iter().rposition(|&k| k == PassKind::Split);
         for (feature, is_there) in [
             ("narrow header", payload(b'H')[0] & 1 == 0),
@@ -195,6 +237,9 @@ fn the_golden_streams_cover_the_syntax() {
             ("exact decimals", chunks.iter().any(|c| c.kind == b'x' && (1..32).contains(&c.payload[1]))),
             ("exact binary fractions", chunks.iter().any(|c| c.kind == b'x' && c.payload[1] >= 32)),
             ("order", chunks.iter().any(|c| c.kind == b'o')),
+            ("scene", chunks.iter().any(|c| c.kind == b'n')),
+            ("materials in front", is_in_front(&chunks, b'm')),
+            ("materials behind", chunks.iter().any(|c| c.kind == b'm') && !is_in_front(&chunks, b'm')),
         ] {
             *seen.entry(feature).or_default() |= is_there;
         }
@@ -210,7 +255,9 @@ mod make {
     use super::common::kinds::beside;
     use super::common::*;
     use lwc::descriptors::Descriptor;
-    use lwc::mesh::{Attribute, Domain, NO_ROW, Semantic, Values};
+    use lwc::mesh::{
+        Attribute, Domain, GltfMaterials, IDENTITY, Instance, NO_ROW, SceneTable, Semantic, Values,
+    };
     use lwc::{EncodeOptions, Partition, TriMesh, encode, encode_with_attributes};
     use std::path::Path;
     use std::sync::Once;
@@ -260,6 +307,13 @@ mod make {
             ("soup", fast(&soup(30, 60, 5), 9)),
             // Passes with all kinds of streams.
             ("large-torus", fast(&noisy(torus(100, 50), 1, 0.002), 7)),
+            ("torn-grid", {
+                let mesh = noisy(grid(9, 8, bumpy), 15, 0.05);
+                let mut options = EncodeOptions::default();
+                options.profile = lwc::Profile::Fast;
+                let list = attributed::torn(&mesh);
+                encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
+            }),
             ("strip-with-ears", {
                 stream(&noisy(strip(120), 3, 0.02), |o| {
                     (o.partition, o.profile) = (Partition::Algorithm1, lwc::Profile::Fast);
@@ -372,7 +426,66 @@ mod make {
                 let areas = Attribute::new("area", Semantic::Generic, Domain::Face, 1, Values::F64(areas));
                 attributed(&mesh, vec![attributed::materials(&mesh), areas, uv])
             }),
+            ("vertex-normals", {
+                let mesh = noisy(grid(9, 8, bumpy), 12, 0.1);
+                attributed(&mesh, attributed::vertex_normals(&mesh))
+            }),
+            ("many-channels", {
+                let mesh = noisy(grid(8, 7, bumpy), 13, 0.05);
+                attributed(&mesh, attributed::of_many_channels(&mesh))
+            }),
+            ("torn-strip", {
+                let mesh = noisy(strip(90), 14, 0.02);
+                let mut options = EncodeOptions::default();
+                options.partition = Partition::Algorithm1;
+                let list = attributed::torn(&mesh);
+                encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
+            }),
+            ("assembled", {
+                let mesh = beside(noisy(non_manifold_fin(), 4, 0.02), single_and_loose());
+                let mut options = EncodeOptions::default();
+                everything(&mut options);
+                let list = attributed::torn(&mesh);
+                encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
+            }),
+            ("scene", scene()),
+            ("late-materials", {
+                let mut chunks = chunks::split(&scene());
+                let from = chunks.iter().position(|c| c.kind == b'm').unwrap();
+                let materials = chunks.remove(from);
+                let size = chunks::varint(materials.payload.len() as u32);
+                let announced = [&[0, b'm'][..], &size].concat();
+                let table = chunks.iter().position(|c| c.kind == b'L').unwrap();
+                chunks.insert(table, Chunk::new(b't', &announced));
+                chunks.push(materials);
+                chunks::join(&chunks)
+            }),
         ]
+    }
+
+    /// Two meshes in three places, with a material each.
+    fn scene() -> Vec<u8> {
+        let mesh = beside(tetrahedron(), sphere(0));
+        let number = |t: usize| u32::from(t >= 4);
+        let which = (0..mesh.num_triangles()).map(number).collect();
+        let which = Attribute::new("scene mesh", Semantic::Generic, Domain::Face, 1, Values::U32(which));
+        let mut attributes = attributed::all(vec![which, attributed::materials(&mesh)]);
+        let place = |mesh, name: &str, transform| Instance { mesh, name: name.into(), transform };
+        let [x, y, z] = IDENTITY;
+        attributes.scene = Some(SceneTable {
+            exponents: vec![0, -2],
+            instances: vec![
+                place(0, "", IDENTITY),
+                place(1, "Baum", [[1.0, 0.0, 0.0, 2.5], y, z]),
+                place(1, "turned", [[0.0, -1.0, 0.0, 2.5], x, z]),
+                place(0, "exact", [[0.1, 0.0, 0.0, 0.0], y, z]),
+            ],
+        });
+        let json = r#"{"materials":[{"name":"north"},{"name":"south"}]}"#.to_owned();
+        let mut materials = GltfMaterials::default();
+        (materials.json, materials.images) = (json, vec![vec![1, 2, 3]]);
+        attributes.gltf_materials = Some(materials);
+        encode_with_attributes(&mesh, &attributes, &EncodeOptions::default(), &|_| {}).unwrap().bytes
     }
 
     fn everything(options: &mut EncodeOptions) {

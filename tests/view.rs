@@ -73,6 +73,7 @@ fn the_page_and_its_parts_come_from_the_program() {
         ("/viewer.js", "text/javascript"),
         ("/worker.js", "text/javascript"),
         ("/lwc.wasm", "application/wasm"),
+        ("/lwc-assets.wasm", "application/wasm"),
     ] {
         let part = server.get(path, "");
         assert_eq!(part.status, 200, "{path}");

@@ -25,6 +25,8 @@ for (const { path, contents } of outputFiles) {
   }
   console.log(`${path.slice(path.lastIndexOf('/') + 1)}: ${contents.length} bytes`);
 }
-// The module is not compared: another compiler gives other bytes. The tests run both on the golden streams.
-if (!isCheck) copyFileSync(new URL('dist/lwc.wasm', root), new URL('viewer/embedded/lwc.wasm', root));
+// The modules are not compared: another compiler gives other bytes. The tests run both on the golden streams.
+for (const name of isCheck ? [] : ['lwc.wasm', 'lwc-assets.wasm']) {
+  copyFileSync(new URL(`dist/${name}`, root), new URL(`viewer/embedded/${name}`, root));
+}
 process.exit(isStale ? 1 : 0);

@@ -1,7 +1,7 @@
 //! Meshes with attributes.
 
 use super::*;
-use lwc::mesh::{Attribute, Attributes, Domain, Semantic, Values};
+use lwc::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Values};
 
 pub fn all(list: Vec<Attribute>) -> Attributes {
     let mut attributes = Attributes::default();
@@ -65,4 +65,50 @@ pub fn materials(mesh: &TriMesh) -> Attribute {
         indices: Some(indices),
         ..Attribute::new("usemtl", Semantic::Material, Domain::Face, 1, Values::Names(names))
     }
+}
+
+/// Directions at vertices, as floats and as bytes.
+pub fn vertex_normals(mesh: &TriMesh) -> Vec<Attribute> {
+    let length = |p: [f64; 3]| p.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let unit = positions(mesh).map(|[x, y, z]| [x.sin(), (0.7 * y).cos() - 0.5, 0.3 + z]);
+    let unit: Vec<f64> = unit.flat_map(|p| p.map(|x| x / length(p))).collect();
+    let floats = Values::F32(unit.iter().map(|&x| x as f32).collect());
+    let bytes = Values::I8(unit.iter().map(|&x| (x * 127.0).round() as i8).collect());
+    let normal = |name, values| Attribute::new(name, Semantic::Normal, Domain::Vertex, 3, values);
+    vec![normal("NORMAL", floats), Attribute { is_normalized: true, ..normal("packed", bytes) }]
+}
+
+/// Two to four channels of different kinds and types.
+pub fn of_many_channels(mesh: &TriMesh) -> Vec<Attribute> {
+    let list = |f: &dyn Fn([f64; 3]) -> Vec<f64>| positions(mesh).flat_map(f).collect::<Vec<f64>>();
+    let rgba = list(&|[x, y, z]| vec![x.sin(), y.cos(), z, 0.5 * x - 0.2 * y]);
+    let rgba = Values::U16(rgba.iter().map(|x| (20000.0 + 9000.0 * x) as u16).collect());
+    let layers = list(&|[x, y, z]| vec![0.1 * x, 0.1 * y, z]);
+    let ramp = list(&|[x, _, z]| vec![x + z]);
+    let ways = Values::I16(list(&|[x, y, _]| vec![90.0 * x, -50.0 * y]).iter().map(|&x| x as i16).collect());
+    let few = Values::F64(list(&|[x, y, _]| vec![(x + y).round() * 0.1, 1e300]));
+    let vertex = |name, semantic, n, values| Attribute::new(name, semantic, Domain::Vertex, n, values);
+    vec![
+        vertex("rgba", Semantic::Color(1), 4, rgba),
+        vertex("layers", Semantic::TexCoord(0), 3, Values::F64(layers)),
+        vertex("ramp", Semantic::TexCoord(3), 1, Values::F32(ramp.iter().map(|&x| x as f32).collect())),
+        vertex("ways", Semantic::Generic, 2, ways),
+        vertex("few", Semantic::Generic, 2, few),
+    ]
+}
+
+/// Of corners, with seams and gaps anywhere, and of faces.
+pub fn torn(mesh: &TriMesh) -> Vec<Attribute> {
+    let at = |corner: usize| mesh.positions()[mesh.triangles()[corner / 3][corner % 3] as usize];
+    let side = |corner: usize| (at(corner / 3 * 3)[0] * 3.0).sin() > 0.4;
+    let corners = 0..3 * mesh.num_triangles();
+    let place = |c| if side(c) { [at(c)[0], at(c)[1]] } else { [at(c)[1] + 5.0, at(c)[2]] };
+    let places = corners.clone().flat_map(|c| place(c).map(|x| x as f32)).collect();
+    let rows = corners.map(|c| if c % 41 < 5 { NO_ROW } else { c as u32 }).collect();
+    let uv = Attribute::new("torn", Semantic::TexCoord(0), Domain::Corner, 2, Values::F32(places));
+    let heights = (0..mesh.num_triangles()).map(|t| (10.0 * at(3 * t)[2]) as i32).collect();
+    let heights = Attribute::new("heights", Semantic::Group, Domain::Face, 1, Values::I32(heights));
+    let spread = (0..mesh.num_vertices()).map(|v| (v % 5) as u8 * 60).collect();
+    let spread = Attribute::new("spread", Semantic::Generic, Domain::Vertex, 1, Values::U8(spread));
+    vec![Attribute { indices: Some(rows), ..uv }, heights, spread]
 }

@@ -57,6 +57,7 @@ const parts = {
   '/viewer.js': ['embedded/viewer.js', 'text/javascript'],
   '/worker.js': ['embedded/worker.js', 'text/javascript'],
   '/lwc.wasm': ['embedded/lwc.wasm', 'application/wasm'],
+  '/lwc-assets.wasm': ['embedded/lwc-assets.wasm', 'application/wasm'],
 };
 
 /** Serves the page with a model and the faults of `test/server.mjs`. */

@@ -1,6 +1,6 @@
 /** The decoder in a worker: bytes in, updates out, the calling thread stays free. @module */
 
-import { DecodeError, type DecodeOptions, type StreamInfo } from './decoder.js';
+import { DecodeError, type DecodeOptions, type StreamInfo, assetsURL } from './decoder.js';
 import type { FromWorker, MeshUpdate, ToWorker } from './messages.js';
 
 export type { MeshUpdate } from './messages.js';
@@ -9,7 +9,7 @@ export type { MeshUpdate } from './messages.js';
 export interface WorkerOptions extends DecodeOptions {
   /** Default: `worker.js` beside this file. */
   createWorker?: () => Worker;
-  /** Default: `lwc.wasm` beside this file. */
+  /** Default: `lwc.wasm` beside this file, with the option `attributes` `lwc-assets.wasm`. */
   wasmURL?: string | URL;
   /**
    * The worker looks for new bytes and requests about this often, in milliseconds. Default 8.
@@ -57,7 +57,8 @@ export class DecoderWorker {
       : new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
     this.#worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.#receive(data);
     this.#worker.onerror = (event) => this.#fail(new Error(event.message || 'the worker does not start'));
-    this.#ready = compile(wasmURL ?? new URL('./lwc.wasm', import.meta.url)).then((module) => {
+    const url = decode.attributes ? assetsURL : new URL('./lwc.wasm', import.meta.url);
+    this.#ready = compile(wasmURL ?? url).then((module) => {
       this.#post({ type: 'open', module, options: decode, slice: slice ?? 8 });
     });
     this.#ready.catch((error: unknown) => this.#fail(error));

@@ -32,6 +32,19 @@ interface Exports {
   expected_error(handle: number): number;
   checksum(handle: number): number;
   is_complete(handle: number): number;
+  // Of lwc-assets.wasm alone:
+  draw?(handle: number): number;
+  drawn_positions?(handle: number): number;
+  drawn_normals?(handle: number): number;
+  drawn_colors?(handle: number): number;
+  drawn_uvs?(handle: number): number;
+  drawn_sources?(handle: number): number;
+  drawn_triangles?(handle: number): number;
+  drawn_parts?(handle: number): number;
+  scene?(handle: number): number;
+  scene_length?(handle: number): number;
+  attribute_bytes?(handle: number): number;
+  attribute_checksum?(handle: number): number;
 }
 
 /** The compiled module, ready for any number of decoders. */
@@ -39,6 +52,9 @@ export class Wasm {
   /** @internal */
   constructor(readonly exports: Exports) {}
 }
+
+/** Where `lwc-assets.wasm` is: the module that knows attributes and scenes. */
+export const assetsURL = new URL('./lwc-assets.wasm', import.meta.url);
 
 /** What {@link loadWasm} takes; default: `lwc.wasm` beside this file. */
 export type WasmSource = string | URL | Response | BufferSource | WebAssembly.Module;
@@ -107,6 +123,42 @@ export interface Update {
   rewrittenTriangles: Range[];
 }
 
+/** Where a mesh of a scene stands. */
+export interface Instance {
+  mesh: number;
+  name: string;
+  /** Three rows (a, b, c, d): a·x + b·y + c·z + d is one coordinate of the scene. */
+  transform: number[];
+}
+
+/** The meshes of a scene are in one mesh; mesh `i` is drawn in its own coordinates times 2 to its exponent. */
+export interface SceneInfo {
+  exponents: number[];
+  instances: Instance[];
+}
+
+/**
+ * The mesh with its attributes as it is drawn: a vertex for each different set of values at a vertex. The vertices of
+ * the mesh come first, in their order, behind them those that seams repeat.
+ */
+export interface Drawing {
+  /** n × 3. */
+  positions: Float32Array;
+  /** m × 3. */
+  indices: Uint32Array;
+  /** Those of the stream, or with the option `shade` those of the surface, n × 3. */
+  normals: Float32Array | undefined;
+  /** Linear red, green, blue and opacity in 65535ths, n × 4. */
+  colors: Uint16Array | undefined;
+  /** Texture coordinates from the lower left corner of the image, n × 2. */
+  uvs: Float32Array | undefined;
+  /** The vertex of the mesh that each vertex is, n. */
+  sources: Uint32Array;
+  /** Of a scene the first triangle of each mesh, and the end of the last; empty otherwise. */
+  parts: Uint32Array;
+  scene: SceneInfo | undefined;
+}
+
 /** What {@link Decoder.stepWithin} came to. */
 export type Step =
   /** A pass is finished: the mesh has changed. */
@@ -157,7 +209,11 @@ export interface DecodeOptions {
   relative?: boolean;
   /** Compute vertex normals and the expected error after each pass. */
   shade?: boolean;
+  /** Attributes and scenes, which `lwc-assets.wasm` alone knows: see {@link Decoder.draw}. */
+  attributes?: boolean;
 }
+
+type Typed<T> = new (buffer: ArrayBufferLike, at: number, length: number) => T;
 
 /** Decodes a stream as it arrives. */
 export class Decoder {
@@ -165,9 +221,11 @@ export class Decoder {
   #handle: number;
   #info: StreamInfo | undefined;
   #done = 0;
+  #scene: SceneInfo | undefined;
 
   constructor(wasm: Wasm, options: DecodeOptions = {}) {
     this.#wasm = wasm.exports;
+    if (options.attributes && !this.#wasm.draw) throw new TypeError('attributes need lwc-assets.wasm');
     this.#handle = this.#wasm.create(
       options.level ?? ALL,
       options.maxMemory ?? 2 ** 30,
@@ -317,6 +375,44 @@ export class Decoder {
     return this.#wasm.checksum(this.#handle) >>> 0;
   }
 
+  /**
+   * The mesh at hand with its attributes; what has not come yet of these is guessed. Collected anew by each call:
+   * time in proportion to the mesh. The views are valid until the next call of any method.
+   */
+  draw(): Drawing {
+    const [wasm, handle] = [this.#wasm as Required<Exports>, this.#handle];
+    const [vertices, faces, ends, colors, uvs, normals] = this.#words(wasm.draw(handle), 6) as unknown as number[];
+    const view = <T>(type: Typed<T>, at: number, length: number): T =>
+      new type(wasm.memory.buffer, length > 0 ? at : 0, length);
+    return {
+      positions: view(Float32Array, wasm.drawn_positions(handle), 3 * vertices!),
+      indices: view(Uint32Array, wasm.drawn_triangles(handle), 3 * faces!),
+      normals: normals ? view(Float32Array, wasm.drawn_normals(handle), 3 * normals) : undefined,
+      colors: colors ? view(Uint16Array, wasm.drawn_colors(handle), 4 * colors) : undefined,
+      uvs: uvs ? view(Float32Array, wasm.drawn_uvs(handle), 2 * uvs) : undefined,
+      sources: view(Uint32Array, wasm.drawn_sources(handle), vertices!),
+      parts: view(Uint32Array, wasm.drawn_parts(handle), ends!),
+      scene: (this.#scene ??= this.#readScene(wasm)),
+    };
+  }
+
+  #readScene(wasm: Required<Exports>): SceneInfo | undefined {
+    const length = wasm.scene_length(this.#handle);
+    if (length === 0) return undefined;
+    const text = new Uint8Array(wasm.memory.buffer, wasm.scene(this.#handle), length);
+    return JSON.parse(new TextDecoder().decode(text)) as SceneInfo;
+  }
+
+  /** Bytes of attributes decoded so far: they follow the pass that they belong to. */
+  get attributeBytes(): number {
+    return this.#wasm.attribute_bytes?.(this.#handle) ?? 0;
+  }
+
+  /** Checksum of the values of all attributes: the same on every platform. */
+  attributeChecksum(): number {
+    return (this.#wasm.attribute_checksum?.(this.#handle) ?? 0) >>> 0;
+  }
+
   /** Frees the decoder's memory. It cannot be used afterwards. */
   free(): void {
     if (this.#handle >= 0) this.#wasm.destroy(this.#handle);
@@ -338,7 +434,7 @@ export class Decoder {
     return new Uint32Array(this.#wasm.memory.buffer, at, length);
   }
 
-  #view<T>(type: new (buffer: ArrayBufferLike, at: number, length: number) => T, at: number, rows: number): T {
+  #view<T>(type: Typed<T>, at: number, rows: number): T {
     return new type(this.#wasm.memory.buffer, rows > 0 ? at : 0, rows * 3);
   }
 

@@ -2,7 +2,7 @@
 
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Sphere } from 'three';
 import { union } from './changes.js';
-import type { StreamInfo } from './decoder.js';
+import type { Drawing, SceneInfo, StreamInfo } from './decoder.js';
 import type { MeshUpdate } from './messages.js';
 
 /** Numbers copied between two looks at the clock. */
@@ -17,9 +17,16 @@ const UPLOAD_GAP = 4096;
 export class RefinedGeometry extends BufferGeometry {
   /** Longest time spent at a stretch so far, in milliseconds. */
   longestSlice = 0;
-  readonly #position: BufferAttribute;
+  /** Of a scene, with the option `attributes`: where its meshes stand. */
+  scene: SceneInfo | undefined;
+  /** Of a scene the first triangle of each mesh, and the end of the last. */
+  parts: Uint32Array = new Uint32Array();
+  /** With the option `attributes`: the vertex of the mesh that each vertex is. */
+  sources: Uint32Array | undefined;
+  #position: BufferAttribute;
   readonly #normal: BufferAttribute | undefined;
-  readonly #index: BufferAttribute;
+  #index: BufferAttribute;
+  #replaced = 0;
 
   constructor(vertices: number, faces: number, hasNormals: boolean) {
     super();
@@ -49,11 +56,12 @@ export class RefinedGeometry extends BufferGeometry {
 
   /** Grows whenever something was written: a page that draws on demand looks at it. */
   get version(): number {
-    return this.#position.version + this.#index.version;
+    return this.#position.version + this.#index.version + this.#replaced;
   }
 
   /** Writes what changed, in slices of `milliseconds`, one a frame. */
   async refine(update: MeshUpdate, milliseconds: number): Promise<void> {
+    if (update.drawing) return this.#replace(update, update.drawing);
     const slices = this.#write(update);
     for (;;) {
       const start = performance.now();
@@ -63,6 +71,28 @@ export class RefinedGeometry extends BufferGeometry {
       if (isDone) return;
       await nextFrame();
     }
+  }
+
+  /** With attributes every update brings all arrays: vertices that seams repeat have new numbers each time. */
+  #replace(update: MeshUpdate, drawing: Drawing): void {
+    // Frees the buffers of the old ones.
+    this.dispose();
+    this.#position = new BufferAttribute(drawing.positions, 3);
+    this.#index = new BufferAttribute(drawing.indices, 1);
+    this.setAttribute('position', this.#position).setIndex(this.#index);
+    if (drawing.normals) this.setAttribute('normal', new BufferAttribute(drawing.normals, 3));
+    if (drawing.colors) this.setAttribute('color', new BufferAttribute(drawing.colors, 4, true));
+    if (drawing.uvs) this.setAttribute('uv', new BufferAttribute(drawing.uvs, 2));
+    ({ scene: this.scene, parts: this.parts, sources: this.sources } = drawing);
+    this.#replaced += 1;
+    this.setDrawRange(0, drawing.indices.length);
+    this.#bound(update.box);
+  }
+
+  #bound([x0, y0, z0, x1, y1, z1]: MeshUpdate['box']): void {
+    this.boundingBox!.min.set(x0, y0, z0);
+    this.boundingBox!.max.set(x1, y1, z1);
+    this.boundingBox!.getBoundingSphere(this.boundingSphere!);
   }
 
   // New vertices and triangles first: nothing draws them yet. Vertices that move do so one by one, and any
@@ -85,10 +115,7 @@ export class RefinedGeometry extends BufferGeometry {
     for (const { start, end } of union(written, UPLOAD_GAP)) mark(this.#index, 3 * start, 3 * (end - start));
 
     this.setDrawRange(0, 3 * update.pass.faces);
-    const [x0, y0, z0, x1, y1, z1] = update.box;
-    this.boundingBox!.min.set(x0, y0, z0);
-    this.boundingBox!.max.set(x1, y1, z1);
-    this.boundingBox!.getBoundingSphere(this.boundingSphere!);
+    this.#bound(update.box);
   }
 }
 

@@ -16,6 +16,7 @@ import { RefinedGeometry } from './geometry.js';
 import type { MeshUpdate } from './messages.js';
 
 export { RefinedGeometry } from './geometry.js';
+export { SceneGroup } from './scene.js';
 
 /** How far a load is, when the mesh has just become finer. */
 export interface Refinement {
@@ -69,6 +70,12 @@ export class LWCLoader extends Loader<RefinedGeometry> {
   decoderOptions: WorkerOptions = {};
   /** Whether to compute vertex normals. */
   normals = true;
+  /**
+   * Whether to give the geometry the attributes of the stream, with a module that is larger: `color`, `normal`, `uv`.
+   * Each update replaces all arrays then. Of a scene {@link RefinedGeometry.scene} says where its meshes stand, and
+   * `SceneGroup` draws them there.
+   */
+  attributes = false;
   /** Milliseconds that the page's thread may be busy at a stretch with new data. */
   slice = 4;
   /** How often to try again after the connection was cut, without a byte gained in between. */
@@ -77,7 +84,7 @@ export class LWCLoader extends Loader<RefinedGeometry> {
   /** In place of the browser's own. */
   fetch: Fetch | undefined;
   #loads = new Set<Running>();
-  #spare: { worker: DecoderWorker; hasNormals: boolean } | undefined;
+  #spare: { worker: DecoderWorker; kind: string } | undefined;
 
   constructor(manager?: LoadingManager) {
     super(manager);
@@ -91,20 +98,25 @@ export class LWCLoader extends Loader<RefinedGeometry> {
 
   /** Starts a worker for the next load, which then need not wait for one. */
   preload(): this {
-    this.#spare ??= { worker: this.#newWorker(), hasNormals: this.normals };
+    this.#spare ??= { worker: this.#newWorker(), kind: this.#kind };
     return this;
   }
 
   /** A worker that nobody else has. @internal */
   takeWorker(): DecoderWorker {
-    if (this.#spare?.hasNormals !== this.normals) this.#dropSpare();
+    if (this.#spare?.kind !== this.#kind) this.#dropSpare();
     const worker = this.#spare?.worker ?? this.#newWorker();
     this.#spare = undefined;
     return worker;
   }
 
+  /** What a worker must be told before it begins. */
+  get #kind(): string {
+    return `${this.normals} ${this.attributes}`;
+  }
+
   #newWorker(): DecoderWorker {
-    return new DecoderWorker({ ...this.decoderOptions, shade: this.normals });
+    return new DecoderWorker({ ...this.decoderOptions, shade: this.normals, attributes: this.attributes });
   }
 
   #dropSpare(): void {
@@ -192,7 +204,9 @@ class Refined {
       const update = await this.worker.next();
       if (!update) break;
       const info = this.worker.info!;
-      this.geometry ??= RefinedGeometry.of(info, this.loader.normals, this.loader.decoderOptions.level);
+      this.geometry ??= update.drawing
+        ? new RefinedGeometry(0, 0, false)
+        : RefinedGeometry.of(info, this.loader.normals, this.loader.decoderOptions.level);
       await this.geometry.refine(update, this.loader.slice);
       this.last = update;
       const { pass, passesDone, isComplete, expectedError, decodeMilliseconds, longestSlice } = update;

@@ -1,6 +1,6 @@
 /** What passes between the thread of the page and the worker that decodes. @module */
 
-import type { DecodeErrorKind, DecodeOptions, PassInfo, StreamInfo } from './decoder.js';
+import type { DecodeErrorKind, DecodeOptions, Drawing, PassInfo, StreamInfo } from './decoder.js';
 
 export type ToWorker =
   | { type: 'open'; module: WebAssembly.Module; options: DecodeOptions; slice: number }
@@ -36,6 +36,8 @@ export interface MeshUpdate {
   rewrittenRanges: Uint32Array;
   /** Vertex indices of those runs, one behind the other. */
   rewrittenIndices: Uint32Array;
+  /** With the option `attributes`; everything else is of this mesh then, and whole. */
+  drawing: Drawing | undefined;
   /** Smallest and largest corner of the box around all vertices. */
   box: [number, number, number, number, number, number];
   /** See `Decoder.expectedError`. */

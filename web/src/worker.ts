@@ -1,7 +1,7 @@
 /** Decodes in a worker and hands over what changed, no faster than the page takes it. @module */
 
 import { Changes } from './changes.js';
-import { DecodeError, Decoder, WORK, loadWasm } from './decoder.js';
+import { DecodeError, Decoder, type Drawing, WORK, loadWasm } from './decoder.js';
 import type { FromWorker, MeshUpdate, ToWorker } from './messages.js';
 
 const scope = globalThis as unknown as {
@@ -11,6 +11,9 @@ const scope = globalThis as unknown as {
 
 let decoder: Decoder | undefined;
 let slice = 8;
+let hasAttributes = false;
+/** Bytes of attributes decoded when the mesh was sent. */
+let sentAttributes = 0;
 let waiting: Uint8Array[] = [];
 let isTaken = false;
 let hasEnded = false;
@@ -31,6 +34,7 @@ scope.onmessage = async ({ data }) => {
     case 'open':
       decoder = new Decoder(await loadWasm(data.module), data.options);
       slice = data.slice;
+      hasAttributes = data.options.attributes ?? false;
       break;
     case 'bytes':
       waiting.push(data.bytes);
@@ -72,7 +76,8 @@ function showSlice(decoder: Decoder): boolean {
   if (!decoder.prepareFor(slice)) return true;
   isTaken = false;
   isDirty = false;
-  send(decoder);
+  if (hasAttributes) sendDrawing(decoder);
+  else send(decoder);
   return true;
 }
 
@@ -89,7 +94,11 @@ function decodeSlice(decoder: Decoder): boolean {
         hasInfo = true;
         scope.postMessage({ type: 'info', info: decoder.info });
       }
-      if (step.type === 'waiting') return false;
+      if (step.type === 'waiting') {
+        // Values come behind the pass that brings their vertices.
+        isDirty ||= hasAttributes && decoder.passesDone > 0 && decoder.attributeBytes !== sentAttributes;
+        return false;
+      }
       if (step.type === 'finished') {
         changes.add(step.update, sent.triangles);
         isDirty = true;
@@ -118,10 +127,8 @@ function answerEnd(decoder: Decoder): void {
 function send(decoder: Decoder): void {
   const pass = decoder.pass!;
   const firstVertex = Math.min(changes.firstVertex, sent.vertices);
-  const positions = decoder.positions.slice(3 * firstVertex);
   const { normals } = decoder;
   const all = decoder.indices;
-  const indices = all.slice(3 * sent.triangles);
   const { rewritten } = changes;
   const rewrittenRanges = Uint32Array.from(rewritten.flatMap(({ start, end }) => [start, end]));
   const count = rewritten.reduce((sum, { start, end }) => sum + end - start, 0);
@@ -131,27 +138,70 @@ function send(decoder: Decoder): void {
     rewrittenIndices.set(all.subarray(3 * start, 3 * end), at);
     at += 3 * (end - start);
   }
-  extendBox(positions);
-  const update: MeshUpdate = {
-    pass,
-    passesDone: decoder.passesDone,
-    isComplete: decoder.isComplete,
+  post(decoder, {
     firstVertex,
-    positions,
+    positions: decoder.positions.slice(3 * firstVertex),
     normals: normals.length > 0 ? normals.slice() : undefined,
     firstTriangle: sent.triangles,
-    indices,
+    indices: all.slice(3 * sent.triangles),
     rewrittenRanges,
     rewrittenIndices,
+    drawing: undefined,
+  });
+  sent = { vertices: pass.vertices, triangles: pass.faces };
+  changes.clear();
+}
+
+/** Vertices that seams repeat have other numbers in each mesh, so all of it goes. */
+function sendDrawing(decoder: Decoder): void {
+  const views = decoder.draw();
+  sentAttributes = decoder.attributeBytes;
+  const drawing: Drawing = {
+    positions: views.positions.slice(),
+    indices: views.indices.slice(),
+    normals: views.normals?.slice(),
+    colors: views.colors?.slice(),
+    uvs: views.uvs?.slice(),
+    sources: views.sources.slice(),
+    parts: views.parts.slice(),
+    scene: views.scene,
+  };
+  const { positions, normals, indices } = drawing;
+  const none = new Uint32Array();
+  post(decoder, {
+    firstVertex: 0,
+    positions,
+    normals,
+    firstTriangle: 0,
+    indices,
+    rewrittenRanges: none,
+    rewrittenIndices: none,
+    drawing,
+  });
+}
+
+type Arrays = Pick<
+  MeshUpdate,
+  | 'firstVertex' | 'positions' | 'normals' | 'firstTriangle' | 'indices' | 'rewrittenRanges' | 'rewrittenIndices'
+  | 'drawing'
+>;
+
+/** Sends an update and gives its arrays away. */
+function post(decoder: Decoder, arrays: Arrays): void {
+  extendBox(arrays.positions);
+  const update: MeshUpdate = {
+    ...arrays,
+    pass: decoder.pass!,
+    passesDone: decoder.passesDone,
+    isComplete: decoder.isComplete,
     box: [...box],
     expectedError: decoder.expectedError,
     decodeMilliseconds,
     longestSlice,
   };
-  sent = { vertices: pass.vertices, triangles: pass.faces };
-  changes.clear();
-  const arrays = [positions, indices, rewrittenRanges, rewrittenIndices, ...(update.normals ? [update.normals] : [])];
-  scope.postMessage({ type: 'update', update }, arrays.map((array) => array.buffer as ArrayBuffer));
+  const owned = [...Object.values(arrays), ...Object.values(arrays.drawing ?? {})].filter(ArrayBuffer.isView);
+  const buffers = new Set(owned.map((array) => array.buffer as ArrayBuffer));
+  scope.postMessage({ type: 'update', update }, [...buffers]);
 }
 
 function extendBox(positions: Float32Array): void {

@@ -35,6 +35,13 @@ static LwcMesh *torus(void) {
     }
     LwcMesh *mesh = NULL;
     check(lwc_mesh_new(positions[0], VERTICES, triangles[0], TRIANGLES, &mesh), "mesh");
+
+    static uint8_t colours[VERTICES][3];
+    for (int v = 0; v < VERTICES; v++)
+        for (int k = 0; k < 3; k++) colours[v][k] = (uint8_t)(128 + 40 * positions[v][k]);
+    LwcAttribute colour = {.name = "colour", .kind = LWC_ATTRIBUTE_KIND_COLOR, .domain = LWC_ATTRIBUTE_DOMAIN_VERTEX,
+                           .scalar = LWC_ATTRIBUTE_TYPE_U8, .components = 3, .normalized = true, .num_rows = VERTICES};
+    check(lwc_mesh_add_attribute(mesh, &colour, colours, NULL), "colours");
     return mesh;
 }
 
@@ -66,7 +73,9 @@ int main(void) {
     coarse.level = 1;
     LwcMesh *first = NULL;
     check(lwc_decode(bytes, size, &coarse, &first), "decode");
-    printf("level 1 alone: %zu vertices\n", lwc_mesh_num_vertices(first));
+    LwcAttribute colour;
+    check(lwc_mesh_attribute(first, 0, &colour), "attribute");
+    printf("level 1 alone: %zu vertices, %zu rows of %s\n", lwc_mesh_num_vertices(first), colour.num_rows, colour.name);
     lwc_mesh_free(first);
 
     if (lwc_decode((const uint8_t *)"solid cube", 10, NULL, &first) != LWC_STATUS_NOT_A_STREAM) return 1;

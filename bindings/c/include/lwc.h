@@ -14,6 +14,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+// Row of an element that has no value.
+#define LWC_NO_ROW UINT32_MAX
+
 // How a call ended. The names are those of the errors of the Rust library.
 typedef enum LwcStatus {
   // It did what was asked.
@@ -50,7 +53,51 @@ typedef enum LwcStatus {
   LWC_STATUS_NULL_POINTER = 15,
   // A mistake in the library.
   LWC_STATUS_INTERNAL = 16,
+  // An attribute does not fit its mesh, or a buffer its attribute.
+  LWC_STATUS_ATTRIBUTE = 17,
 } LwcStatus;
+
+// What the values mean.
+typedef enum LwcAttributeKind {
+  // Anything; the name says what.
+  LWC_ATTRIBUTE_KIND_GENERIC = 0,
+  // Direction away from the surface, three components.
+  LWC_ATTRIBUTE_KIND_NORMAL = 1,
+  // Place in a texture.
+  LWC_ATTRIBUTE_KIND_TEX_COORD = 2,
+  // Red, green, blue and perhaps opacity.
+  LWC_ATTRIBUTE_KIND_COLOR = 3,
+  // Which material.
+  LWC_ATTRIBUTE_KIND_MATERIAL = 4,
+  // Which group of triangles.
+  LWC_ATTRIBUTE_KIND_GROUP = 5,
+  // Which object, or part of a scene.
+  LWC_ATTRIBUTE_KIND_OBJECT = 6,
+} LwcAttributeKind;
+
+// What has a value.
+typedef enum LwcAttributeDomain {
+  // Every vertex.
+  LWC_ATTRIBUTE_DOMAIN_VERTEX = 0,
+  // Every corner: element 3 t + i is corner i of triangle t.
+  LWC_ATTRIBUTE_DOMAIN_CORNER = 1,
+  // Every triangle.
+  LWC_ATTRIBUTE_DOMAIN_FACE = 2,
+} LwcAttributeDomain;
+
+// The type of the values.
+typedef enum LwcAttributeType {
+  LWC_ATTRIBUTE_TYPE_I8 = 0,
+  LWC_ATTRIBUTE_TYPE_U8 = 1,
+  LWC_ATTRIBUTE_TYPE_I16 = 2,
+  LWC_ATTRIBUTE_TYPE_U16 = 3,
+  LWC_ATTRIBUTE_TYPE_I32 = 4,
+  LWC_ATTRIBUTE_TYPE_U32 = 5,
+  LWC_ATTRIBUTE_TYPE_F32 = 6,
+  LWC_ATTRIBUTE_TYPE_F64 = 7,
+  // Strings, UTF-8, each ends in a zero.
+  LWC_ATTRIBUTE_TYPE_NAMES = 8,
+} LwcAttributeType;
 
 // Decodes a stream as it arrives.
 typedef struct LwcDecoder LwcDecoder;
@@ -58,7 +105,7 @@ typedef struct LwcDecoder LwcDecoder;
 // A stream that owns its bytes.
 typedef struct LwcEncoded LwcEncoded;
 
-// A mesh that owns its arrays.
+// A mesh with its attributes, that owns its arrays.
 typedef struct LwcMesh LwcMesh;
 
 // How to encode. See `EncodeOptions` of the Rust library for what the numbers mean.
@@ -81,6 +128,26 @@ typedef struct LwcEncodeOptions {
   int32_t levels;
   // Grid steps to the mean edge of a level; 0: by the error of each level.
   double steps_per_edge;
+  // Bits of each of the two coordinates of a normal, 2 to 30.
+  uint32_t normal_bits;
+  // Bits of a texture coordinate, 1 to 30.
+  uint32_t uv_bits;
+  // Bits of a component of a colour, 1 to 30.
+  uint32_t color_bits;
+  // Bits of a component of any other attribute, 1 to 30.
+  uint32_t generic_bits;
+  // How the passes are coded, "small" or "fast"; null for the default.
+  const char *profile;
+  // Time that may be spent, 0 to 9.
+  uint32_t effort;
+  // Keep all coordinates bit for bit.
+  bool lossless;
+  // Keep the order of vertices and triangles and the first corner of each.
+  bool keep_order;
+  // Keep vertices that no triangle has.
+  bool keep_isolated;
+  // Keep triangles that name a vertex twice.
+  bool keep_degenerate;
 } LwcEncodeOptions;
 
 // How to decode, and what a stream that is not trusted may ask for.
@@ -127,6 +194,26 @@ typedef struct LwcChanges {
   size_t num_rewritten;
 } LwcChanges;
 
+// An attribute: a table of values, and which element has which row of it.
+typedef struct LwcAttribute {
+  // What the file calls it, UTF-8, ends in a zero.
+  const char *name;
+  // An LwcAttributeKind.
+  uint32_t kind;
+  // Of texture coordinates and colours, which of several.
+  uint32_t set;
+  // An LwcAttributeDomain.
+  uint32_t domain;
+  // An LwcAttributeType.
+  uint32_t scalar;
+  // Values of a row, 1 to 16; 1 for names.
+  uint32_t components;
+  // Whether integers are fractions of the largest of their type.
+  bool normalized;
+  // Rows of the table.
+  size_t num_rows;
+} LwcAttribute;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -172,7 +259,7 @@ const double *lwc_mesh_positions(const struct LwcMesh *mesh);
 // `mesh` was handed out by this library and has not been freed.
 const uint32_t *lwc_mesh_triangles(const struct LwcMesh *mesh);
 
-// Encodes a mesh. `options` may be null for the defaults.
+// Encodes a mesh with its attributes. `options` may be null for the defaults.
 //
 // # Safety
 // `mesh` was handed out by this library and has not been freed; `options` is null or can be read; `encoded`
@@ -199,7 +286,7 @@ const uint8_t *lwc_encoded_bytes(const struct LwcEncoded *encoded);
 // `encoded` was handed out by this library and has not been freed.
 size_t lwc_encoded_num_bytes(const struct LwcEncoded *encoded);
 
-// Decodes a stream, or the beginning of one, in one call. `options` may be null for the defaults.
+// Decodes a stream, or the beginning of one, with its attributes in one call. `options` may be null for the defaults.
 //
 // # Safety
 // `bytes` has `num_bytes` elements; `options` is null or can be read; `mesh` can be written to.
@@ -268,6 +355,21 @@ const uint32_t *lwc_decoder_triangles(const struct LwcDecoder *decoder);
 // `decoder` was handed out by this library and has not been freed.
 uint32_t lwc_decoder_checksum(const struct LwcDecoder *decoder);
 
+// A copy of the mesh at hand as it was encoded: vertices joined where the surface was cut, behind the last pass what
+// lies loose, exact positions and the order of the file, if the stream has them; with the attributes. It is to be
+// freed by lwc_mesh_free. LWC_STATUS_NO_MESH before the base mesh.
+//
+// # Safety
+// `decoder` was handed out by this library and has not been freed; `mesh` can be written to.
+enum LwcStatus lwc_decoder_mesh(const struct LwcDecoder *decoder,
+                                struct LwcMesh **mesh);
+
+// Checksum of the values of all attributes so far (`format/SPEC.md`, section 9); 0 without any.
+//
+// # Safety
+// `decoder` was handed out by this library and has not been freed.
+uint32_t lwc_decoder_attribute_checksum(const struct LwcDecoder *decoder);
+
 // Passes that the stream announces; 0 before its table of passes has come.
 //
 // # Safety
@@ -288,6 +390,69 @@ enum LwcStatus lwc_decoder_pass(const struct LwcDecoder *decoder,
 // `decoder` was handed out by this library and has not been freed.
 bool lwc_decoder_is_complete(const struct LwcDecoder *decoder);
 
+// Gives a mesh an attribute: a copy of `values`, num_rows × components of the type of `what` (for names pointers to
+// strings), and of `rows`, for each element the row it has or LWC_NO_ROW. `rows` may be null: element k has row k.
+// There are as many elements as the mesh has vertices, corners (3 × triangles) or triangles.
+//
+// # Safety
+// `mesh` was handed out by this library, has not been freed and is used by this thread alone; `what` can be read and
+// its name ends in a zero; `values` and `rows` have that many elements and are aligned for their type.
+enum LwcStatus lwc_mesh_add_attribute(struct LwcMesh *mesh,
+                                      const struct LwcAttribute *what,
+                                      const void *values,
+                                      const uint32_t *rows);
+
+// Number of attributes; 0 for null.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed.
+size_t lwc_mesh_num_attributes(const struct LwcMesh *mesh);
+
+// Index of the first attribute of this name; LWC_STATUS_NOTHING_TO_DO if there is none.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `name` ends in a zero; `index` can be written to.
+enum LwcStatus lwc_mesh_find_attribute(const struct LwcMesh *mesh,
+                                       const char *name,
+                                       size_t *index);
+
+// What an attribute is; its name is valid until the mesh is freed or gets another attribute.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `found` can be written to.
+enum LwcStatus lwc_mesh_attribute(const struct LwcMesh *mesh,
+                                  size_t index,
+                                  struct LwcAttribute *found);
+
+// Copies the table of an attribute, num_rows × components numbers of its type, into a buffer of exactly that size in
+// bytes. Not for names.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `values` has `num_bytes` bytes.
+enum LwcStatus lwc_mesh_attribute_values(const struct LwcMesh *mesh,
+                                         size_t index,
+                                         void *values,
+                                         size_t num_bytes);
+
+// Copies the row of each element, or LWC_NO_ROW, into an array of exactly as many elements as the mesh has of the
+// attribute's domain.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `rows` has `num_elements` elements.
+enum LwcStatus lwc_mesh_attribute_rows(const struct LwcMesh *mesh,
+                                       size_t index,
+                                       uint32_t *rows,
+                                       size_t num_elements);
+
+// The name in a row of an attribute of names, valid until the mesh is freed or gets another attribute; null if there
+// is none.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed.
+const char *lwc_mesh_attribute_name(const struct LwcMesh *mesh,
+                                    size_t index,
+                                    size_t row);
+
 // Says more about the last call of this thread that failed; valid until the next one that does.
 const char *lwc_last_error(void);
 
@@ -296,6 +461,69 @@ struct LwcDecodeOptions lwc_decode_options_default(void);
 
 // The defaults of the Rust library.
 struct LwcEncodeOptions lwc_encode_options_default(void);
+
+// Gives a mesh an attribute: a copy of `values`, num_rows × components of the type of `what` (for names pointers to
+// strings), and of `rows`, for each element the row it has or LWC_NO_ROW. `rows` may be null: element k has row k.
+// There are as many elements as the mesh has vertices, corners (3 × triangles) or triangles.
+//
+// # Safety
+// `mesh` was handed out by this library, has not been freed and is used by this thread alone; `what` can be read and
+// its name ends in a zero; `values` and `rows` have that many elements and are aligned for their type.
+enum LwcStatus lwc_mesh_add_attribute(struct LwcMesh *mesh,
+                                      const struct LwcAttribute *what,
+                                      const void *values,
+                                      const uint32_t *rows);
+
+// Number of attributes; 0 for null.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed.
+size_t lwc_mesh_num_attributes(const struct LwcMesh *mesh);
+
+// Index of the first attribute of this name; LWC_STATUS_NOTHING_TO_DO if there is none.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `name` ends in a zero; `index` can be written to.
+enum LwcStatus lwc_mesh_find_attribute(const struct LwcMesh *mesh,
+                                       const char *name,
+                                       size_t *index);
+
+// What an attribute is; its name is valid until the mesh is freed or gets another attribute.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `found` can be written to.
+enum LwcStatus lwc_mesh_attribute(const struct LwcMesh *mesh,
+                                  size_t index,
+                                  struct LwcAttribute *found);
+
+// Copies the table of an attribute, num_rows × components numbers of its type, into a buffer of exactly that size in
+// bytes. Not for names.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `values` has `num_bytes` bytes.
+enum LwcStatus lwc_mesh_attribute_values(const struct LwcMesh *mesh,
+                                         size_t index,
+                                         void *values,
+                                         size_t num_bytes);
+
+// Copies the row of each element, or LWC_NO_ROW, into an array of exactly as many elements as the mesh has of the
+// attribute's domain.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `rows` has `num_elements` elements.
+enum LwcStatus lwc_mesh_attribute_rows(const struct LwcMesh *mesh,
+                                       size_t index,
+                                       uint32_t *rows,
+                                       size_t num_elements);
+
+// The name in a row of an attribute of names, valid until the mesh is freed or gets another attribute; null if there
+// is none.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed.
+const char *lwc_mesh_attribute_name(const struct LwcMesh *mesh,
+                                    size_t index,
+                                    size_t row);
 
 // Says more about the last call of this thread that failed; valid until the next one that does.
 const char *lwc_last_error(void);

@@ -43,6 +43,8 @@ pub enum Status {
     NullPointer = 15,
     /// A mistake in the library.
     Internal = 16,
+    /// An attribute does not fit its mesh, or a buffer its attribute.
+    Attribute = 17,
 }
 
 thread_local! {
@@ -92,6 +94,7 @@ pub fn encode(error: EncodeError) -> Status {
         EncodeError::Option { .. } => Status::Option,
         EncodeError::TooLarge(_) => Status::TooLarge,
         EncodeError::BoundingBox => Status::BoundingBox,
+        EncodeError::Attribute { .. } => Status::Attribute,
         _ => Status::Internal,
     };
     tell(status, &error.to_string())

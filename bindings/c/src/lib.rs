@@ -5,18 +5,39 @@
 //! it needs; null pointers are answered with a status and never followed. No panic crosses the border:
 //! `guard` turns one into a status.
 
+mod attributes;
 mod error;
 mod options;
 
+pub use attributes::{
+    Attribute, AttributeDomain, AttributeKind, AttributeType, LWC_NO_ROW, lwc_mesh_add_attribute,
+    lwc_mesh_attribute, lwc_mesh_attribute_name, lwc_mesh_attribute_rows, lwc_mesh_attribute_values,
+    lwc_mesh_find_attribute, lwc_mesh_num_attributes,
+};
 pub use error::{Status, lwc_last_error};
 pub use options::{DecodeOptions, EncodeOptions, lwc_decode_options_default, lwc_encode_options_default};
 
+use attributes::Texts;
 use error::guard;
+use lwc::mesh::Attributes;
 use lwc::{PassKind, TriMesh};
 use std::slice;
 
-/// A mesh that owns its arrays.
-pub struct Mesh(TriMesh);
+/// A mesh with its attributes, that owns its arrays.
+pub struct Mesh {
+    mesh: TriMesh,
+    attributes: Attributes,
+    /// One for each attribute.
+    texts: Vec<Texts>,
+}
+
+impl Mesh {
+    /// As a pointer for C.
+    fn hand_out(mesh: TriMesh, attributes: Attributes) -> *mut Self {
+        let texts = Texts::of(&attributes);
+        Box::into_raw(Box::new(Self { mesh, attributes, texts }))
+    }
+}
 
 /// A stream that owns its bytes.
 pub struct Encoded(lwc::Encoded);
@@ -130,7 +151,7 @@ pub unsafe extern "C" fn lwc_mesh_new(
         let triangles = unsafe { elements::<[u32; 3]>(triangles.cast(), num_triangles) }?;
         let made = TriMesh::new(positions.to_vec(), triangles.to_vec()).map_err(error::mesh)?;
         // SAFETY: the caller's promise.
-        unsafe { put(mesh, Box::into_raw(Box::new(Mesh(made)))) }
+        unsafe { put(mesh, Mesh::hand_out(made, Attributes::default())) }
     })
 }
 
@@ -151,7 +172,7 @@ pub unsafe extern "C" fn lwc_mesh_free(mesh: *mut Mesh) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lwc_mesh_num_vertices(mesh: *const Mesh) -> usize {
     // SAFETY: the caller's promise.
-    unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.0.num_vertices())
+    unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.mesh.num_vertices())
 }
 
 /// Number of triangles; 0 for null.
@@ -161,7 +182,7 @@ pub unsafe extern "C" fn lwc_mesh_num_vertices(mesh: *const Mesh) -> usize {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lwc_mesh_num_triangles(mesh: *const Mesh) -> usize {
     // SAFETY: the caller's promise.
-    unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.0.num_triangles())
+    unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.mesh.num_triangles())
 }
 
 /// Positions, vertices × 3, valid until the mesh is freed; null for null.
@@ -171,7 +192,7 @@ pub unsafe extern "C" fn lwc_mesh_num_triangles(mesh: *const Mesh) -> usize {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lwc_mesh_positions(mesh: *const Mesh) -> *const f64 {
     // SAFETY: the caller's promise.
-    unsafe { mesh.as_ref() }.map_or(std::ptr::null(), |mesh| mesh.0.positions().as_ptr().cast())
+    unsafe { mesh.as_ref() }.map_or(std::ptr::null(), |mesh| mesh.mesh.positions().as_ptr().cast())
 }
 
 /// Vertex indices of the triangles, triangles × 3, valid until the mesh is freed; null for null.
@@ -181,10 +202,10 @@ pub unsafe extern "C" fn lwc_mesh_positions(mesh: *const Mesh) -> *const f64 {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lwc_mesh_triangles(mesh: *const Mesh) -> *const u32 {
     // SAFETY: the caller's promise.
-    unsafe { mesh.as_ref() }.map_or(std::ptr::null(), |mesh| mesh.0.triangles().as_ptr().cast())
+    unsafe { mesh.as_ref() }.map_or(std::ptr::null(), |mesh| mesh.mesh.triangles().as_ptr().cast())
 }
 
-/// Encodes a mesh. `options` may be null for the defaults.
+/// Encodes a mesh with its attributes. `options` may be null for the defaults.
 ///
 /// # Safety
 /// `mesh` was handed out by this library and has not been freed; `options` is null or can be read; `encoded`
@@ -201,7 +222,8 @@ pub unsafe extern "C" fn lwc_encode(
         // SAFETY: the caller's promise.
         let options =
             unsafe { options.as_ref() }.map_or(Ok(lwc::EncodeOptions::default()), options::encode)?;
-        let made = lwc::encode(&mesh.0, &options).map_err(error::encode)?;
+        let made = lwc::encode_with_attributes(&mesh.mesh, &mesh.attributes, &options, &|_| {});
+        let made = made.map_err(error::encode)?;
         // SAFETY: the caller's promise.
         unsafe { put(encoded, Box::into_raw(Box::new(Encoded(made)))) }
     })
@@ -237,7 +259,7 @@ pub unsafe extern "C" fn lwc_encoded_num_bytes(encoded: *const Encoded) -> usize
     unsafe { encoded.as_ref() }.map_or(0, |encoded| encoded.0.bytes.len())
 }
 
-/// Decodes a stream, or the beginning of one, in one call. `options` may be null for the defaults.
+/// Decodes a stream, or the beginning of one, with its attributes in one call. `options` may be null for the defaults.
 ///
 /// # Safety
 /// `bytes` has `num_bytes` elements; `options` is null or can be read; `mesh` can be written to.
@@ -253,9 +275,12 @@ pub unsafe extern "C" fn lwc_decode(
         let bytes = unsafe { elements(bytes, num_bytes) }?;
         // SAFETY: the caller's promise.
         let options = options::decode(unsafe { options.as_ref() });
-        let made = lwc::decode(bytes, options).map_err(error::decode)?;
+        let mut decoder = lwc::Decoder::with_options(options);
+        decoder.push(bytes).map_err(error::decode)?;
+        let (found, attributes) =
+            decoder.preview_with_attributes().ok_or_else(|| error::decode(lwc::DecodeError::NoMesh))?;
         // SAFETY: the caller's promise.
-        unsafe { put(mesh, Box::into_raw(Box::new(Mesh(made)))) }
+        unsafe { put(mesh, Mesh::hand_out(found, attributes)) }
     })
 }
 
@@ -404,6 +429,34 @@ pub unsafe extern "C" fn lwc_decoder_checksum(decoder: *const Decoder) -> u32 {
     // SAFETY: the caller's promise.
     let mesh = unsafe { decoder.as_ref() }.and_then(|decoder| decoder.decoder.mesh());
     mesh.map_or(0, |mesh| mesh.checksum())
+}
+
+/// A copy of the mesh at hand as it was encoded: vertices joined where the surface was cut, behind the last pass what
+/// lies loose, exact positions and the order of the file, if the stream has them; with the attributes. It is to be
+/// freed by lwc_mesh_free. LWC_STATUS_NO_MESH before the base mesh.
+///
+/// # Safety
+/// `decoder` was handed out by this library and has not been freed; `mesh` can be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_decoder_mesh(decoder: *const Decoder, mesh: *mut *mut Mesh) -> Status {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let decoder = unsafe { decoder.as_ref() }.ok_or(Status::NullPointer)?;
+        let found = decoder.decoder.to_tri_mesh_with_attributes();
+        let (found, attributes) = found.ok_or_else(|| error::decode(lwc::DecodeError::NoMesh))?;
+        // SAFETY: the caller's promise.
+        unsafe { put(mesh, Mesh::hand_out(found, attributes)) }
+    })
+}
+
+/// Checksum of the values of all attributes so far (`format/SPEC.md`, section 9); 0 without any.
+///
+/// # Safety
+/// `decoder` was handed out by this library and has not been freed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_decoder_attribute_checksum(decoder: *const Decoder) -> u32 {
+    // SAFETY: the caller's promise.
+    unsafe { decoder.as_ref() }.map_or(0, |decoder| decoder.decoder.attribute_checksum())
 }
 
 /// Passes that the stream announces; 0 before its table of passes has come.

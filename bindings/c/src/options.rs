@@ -2,7 +2,7 @@
 
 use crate::error::{Status, tell};
 use lwc::descriptors::{Descriptor, Window};
-use lwc::{Limits, Optimize, Partition};
+use lwc::{Limits, Optimize, Partition, Profile};
 use std::ffi::{CStr, c_char};
 
 /// How to decode, and what a stream that is not trusted may ask for.
@@ -41,6 +41,26 @@ pub struct EncodeOptions {
     pub levels: i32,
     /// Grid steps to the mean edge of a level; 0: by the error of each level.
     pub steps_per_edge: f64,
+    /// Bits of each of the two coordinates of a normal, 2 to 30.
+    pub normal_bits: u32,
+    /// Bits of a texture coordinate, 1 to 30.
+    pub uv_bits: u32,
+    /// Bits of a component of a colour, 1 to 30.
+    pub color_bits: u32,
+    /// Bits of a component of any other attribute, 1 to 30.
+    pub generic_bits: u32,
+    /// How the passes are coded, "small" or "fast"; null for the default.
+    pub profile: *const c_char,
+    /// Time that may be spent, 0 to 9.
+    pub effort: u32,
+    /// Keep all coordinates bit for bit.
+    pub lossless: bool,
+    /// Keep the order of vertices and triangles and the first corner of each.
+    pub keep_order: bool,
+    /// Keep vertices that no triangle has.
+    pub keep_isolated: bool,
+    /// Keep triangles that name a vertex twice.
+    pub keep_degenerate: bool,
 }
 
 /// All levels, the limits of the Rust library.
@@ -64,6 +84,16 @@ pub extern "C" fn lwc_encode_options_default() -> EncodeOptions {
         quantization: options.quantization,
         levels: options.levels.map_or(-1, |levels| levels as i32),
         steps_per_edge: options.steps_per_edge.unwrap_or(0.0),
+        normal_bits: options.normal_bits,
+        uv_bits: options.uv_bits,
+        color_bits: options.color_bits,
+        generic_bits: options.generic_bits,
+        profile: std::ptr::null(),
+        effort: options.effort,
+        lossless: options.lossless,
+        keep_order: options.keep_order,
+        keep_isolated: options.keep_isolated,
+        keep_degenerate: options.keep_degenerate,
     }
 }
 
@@ -88,11 +118,24 @@ pub fn encode(from: &EncodeOptions) -> Result<lwc::EncodeOptions, Status> {
         let found = Optimize::ALL.into_iter().find(|optimize| optimize.name() == name);
         options.optimize = found.ok_or_else(|| unknown("aim", &name))?;
     }
+    if let Some(name) = name(from.profile) {
+        let found = Profile::ALL.into_iter().find(|profile| profile.name() == name);
+        options.profile = found.ok_or_else(|| unknown("profile", &name))?;
+    }
     options.window = Window { rings: from.rings, radius: from.radius };
     options.growth = from.growth;
     options.quantization = from.quantization;
     options.levels = u32::try_from(from.levels).ok();
     options.steps_per_edge = (from.steps_per_edge != 0.0).then_some(from.steps_per_edge);
+    options.normal_bits = from.normal_bits;
+    options.uv_bits = from.uv_bits;
+    options.color_bits = from.color_bits;
+    options.generic_bits = from.generic_bits;
+    options.effort = from.effort;
+    options.lossless = from.lossless;
+    options.keep_order = from.keep_order;
+    options.keep_isolated = from.keep_isolated;
+    options.keep_degenerate = from.keep_degenerate;
     Ok(options)
 }
 

@@ -12,7 +12,7 @@ fn root() -> PathBuf {
 #[test]
 fn the_header_is_that_of_the_source() {
     let config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
-    let sources = ["lib.rs", "error.rs", "options.rs"];
+    let sources = ["lib.rs", "attributes.rs", "error.rs", "options.rs"];
     let builder = sources.iter().fold(cbindgen::Builder::new().with_config(config), |builder, name| {
         builder.with_src(root().join("src").join(name))
     });

@@ -36,6 +36,7 @@ pub fn encode_error(py: Python<'_>, error: lwc::EncodeError) -> PyErr {
         E::Option { .. } => "Option",
         E::TooLarge(_) => "TooLarge",
         E::BoundingBox => "BoundingBox",
+        E::Attribute { .. } => "Attribute",
         _ => "Other",
     };
     with_kind(py, EncodeError::new_err(error.to_string()), kind)

@@ -2,19 +2,22 @@
 
 mod error;
 
-use error::{DecodeError, EncodeError, decode_error, encode_error, option_error};
-use lwc::descriptors::{Descriptor, Window};
-use lwc::{DecodeOptions, EncodeOptions, Limits, Optimize, Partition, StreamInfo, TriMesh};
-use numpy::{IntoPyArray, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
+mod attributes;
+mod options;
+mod scene;
 
-type Arrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
+use error::{DecodeError, EncodeError, decode_error, encode_error};
+use lwc::descriptors::Descriptor;
+use lwc::mesh::Attributes;
+use lwc::{StreamInfo, TriMesh};
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
 
 #[pymodule]
 mod _lwc {
     #[pymodule_export]
-    use super::{DecodeError, Decoder, EncodeError, Update, decode, descriptors, encode, info};
+    use super::{DecodeError, Decoder, EncodeError, Update, decode, decode_scene, descriptors, encode, info};
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -27,58 +30,22 @@ fn descriptors() -> Vec<&'static str> {
     Descriptor::ALL.into_iter().map(Descriptor::name).collect()
 }
 
-/// Encodes a mesh: vertices n × 3, faces m × 3 (counter-clockwise). What is left out has the default of
-/// `lwc encode`. Returns the stream.
+/// Encodes a mesh: vertices n × 3, faces m × 3 (counter-clockwise), attributes by name: lwc.Attribute, or arrays of
+/// values of vertices. Options are those of `lwc encode`; what is left out has its default. Returns the stream.
 #[pyfunction]
-#[pyo3(signature = (vertices, faces, *, descriptor=None, quantization=None, levels=None, rings=None,
-    radius=None, growth=None, partition=None, optimize=None, steps_per_edge=None,
-    lossless=false, keep_order=false, keep_isolated=false, keep_degenerate=false))]
-#[allow(clippy::too_many_arguments)] // They are keywords in Python.
+#[pyo3(signature = (vertices, faces, *, attributes=None, **options))]
 fn encode<'py>(
     py: Python<'py>,
     vertices: &Bound<'py, PyAny>,
     faces: &Bound<'py, PyAny>,
-    descriptor: Option<&str>,
-    quantization: Option<u32>,
-    levels: Option<u32>,
-    rings: Option<u32>,
-    radius: Option<f64>,
-    growth: Option<f64>,
-    partition: Option<&str>,
-    optimize: Option<&str>,
-    steps_per_edge: Option<f64>,
-    lossless: bool,
-    keep_order: bool,
-    keep_isolated: bool,
-    keep_degenerate: bool,
-) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
-    let mut options = EncodeOptions::default();
-    if let Some(name) = descriptor {
-        options.descriptor = name.parse().map_err(|_| option_error(py, "descriptor", name))?;
-    }
-    if let Some(name) = partition {
-        let found = Partition::ALL.into_iter().find(|partition| partition.name() == name);
-        options.partition = found.ok_or_else(|| option_error(py, "partition", name))?;
-    }
-    if let Some(name) = optimize {
-        let found = Optimize::ALL.into_iter().find(|optimize| optimize.name() == name);
-        options.optimize = found.ok_or_else(|| option_error(py, "optimize", name))?;
-    }
-    let Window { rings: default_rings, radius: default_radius } = options.window;
-    options.window =
-        Window { rings: rings.unwrap_or(default_rings), radius: radius.unwrap_or(default_radius) };
-    options.quantization = quantization.unwrap_or(options.quantization);
-    options.levels = levels.or(options.levels);
-    options.growth = growth.unwrap_or(options.growth);
-    options.steps_per_edge = steps_per_edge.or(options.steps_per_edge);
-    options.lossless = lossless;
-    options.keep_order = keep_order;
-    options.keep_isolated = keep_isolated;
-    options.keep_degenerate = keep_degenerate;
-
+    attributes: Option<&Bound<'py, PyDict>>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let options = options::encode(py, options)?;
     let mesh = tri_mesh(py, vertices, faces)?;
-    let encoded = py.detach(|| lwc::encode(&mesh, &options)).map_err(|error| encode_error(py, error))?;
-    Ok(pyo3::types::PyBytes::new(py, &encoded.bytes))
+    let attributes = attributes.map_or(Ok(Attributes::default()), |dict| attributes::read(py, dict))?;
+    let encoded = py.detach(|| lwc::encode_with_attributes(&mesh, &attributes, &options, &|_| {}));
+    Ok(PyBytes::new(py, &encoded.map_err(|error| encode_error(py, error))?.bytes))
 }
 
 /// Numbers of any type in any layout, as numpy would convert them.
@@ -105,25 +72,7 @@ fn tri_mesh<'py>(
     TriMesh::new(positions, triangles).map_err(|error| error::mesh_error(py, error))
 }
 
-fn decode_options(level: Option<u32>, max_memory: Option<u64>, max_vertices: Option<u32>) -> DecodeOptions {
-    let default = Limits::default();
-    let options = DecodeOptions::new().limits(Limits {
-        max_memory: max_memory.unwrap_or(default.max_memory),
-        max_vertices: max_vertices.unwrap_or(default.max_vertices),
-        ..default
-    });
-    level.map_or(options, |level| options.level(level))
-}
-
-fn arrays<'py>(py: Python<'py>, mesh: TriMesh) -> PyResult<Arrays<'py>> {
-    let (positions, triangles) = mesh.into_parts();
-    let vertices = positions.into_flattened().into_pyarray(py);
-    let faces = triangles.into_flattened().into_pyarray(py);
-    let shaped = |array: &Bound<'py, PyAny>| array.call_method1("reshape", (-1, 3));
-    Ok((shaped(vertices.as_any())?.cast_into()?, shaped(faces.as_any())?.cast_into()?))
-}
-
-/// Decodes a stream, or the beginning of one. Returns vertices (n × 3, float64) and faces (m × 3, uint32).
+/// Decodes a stream, or the beginning of one. Returns a lwc.Mesh.
 #[pyfunction]
 #[pyo3(signature = (stream, *, level=None, max_memory=None, max_vertices=None))]
 fn decode<'py>(
@@ -132,10 +81,30 @@ fn decode<'py>(
     level: Option<u32>,
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
-) -> PyResult<Arrays<'py>> {
-    let options = decode_options(level, max_memory, max_vertices);
-    let mesh = py.detach(|| lwc::decode(stream, options)).map_err(|error| decode_error(py, error))?;
-    arrays(py, mesh)
+) -> PyResult<Bound<'py, PyAny>> {
+    attributes::mesh(py, decoded(py, stream, options::decode(level, max_memory, max_vertices))?)
+}
+
+/// Decodes a stream, or the beginning of one, as a lwc.Scene: a mesh alone is a scene of one instance.
+#[pyfunction]
+#[pyo3(signature = (stream, *, level=None, max_memory=None, max_vertices=None))]
+fn decode_scene<'py>(
+    py: Python<'py>,
+    stream: &[u8],
+    level: Option<u32>,
+    max_memory: Option<u64>,
+    max_vertices: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    scene::scene(py, decoded(py, stream, options::decode(level, max_memory, max_vertices))?)
+}
+
+fn decoded(py: Python<'_>, stream: &[u8], options: lwc::DecodeOptions) -> PyResult<(TriMesh, Attributes)> {
+    let decoded = py.detach(|| {
+        let mut decoder = lwc::Decoder::with_options(options);
+        decoder.push(stream)?;
+        decoder.preview_with_attributes().ok_or(lwc::DecodeError::NoMesh)
+    });
+    decoded.map_err(|error| decode_error(py, error))
 }
 
 /// What a stream says of itself; None if its table of passes has not come yet. Nothing is decoded.
@@ -168,7 +137,22 @@ fn info_dict<'py>(py: Python<'py>, info: &StreamInfo) -> PyResult<Bound<'py, PyD
     dict.set_item("side", info.side())?;
     dict.set_item("levels", info.finest_level())?;
     dict.set_item("total_bytes", info.total_bytes())?;
+    dict.set_item("profile", info.profile().name())?;
     dict.set_item("passes", passes?)?;
+    let attributes: PyResult<Vec<_>> = info.attributes().iter().map(|one| attribute_dict(py, one)).collect();
+    dict.set_item("attributes", attributes?)?;
+    Ok(dict)
+}
+
+fn attribute_dict<'py>(py: Python<'py>, attribute: &lwc::AttributeInfo) -> PyResult<Bound<'py, PyDict>> {
+    let (kind, set) = attributes::kind(attribute.semantic);
+    let dict = PyDict::new(py);
+    dict.set_item("name", &attribute.name)?;
+    dict.set_item("kind", kind)?;
+    dict.set_item("set", set)?;
+    dict.set_item("domain", attributes::domain(attribute.domain))?;
+    dict.set_item("components", attribute.num_components)?;
+    dict.set_item("bits", attribute.bits)?;
     Ok(dict)
 }
 
@@ -225,7 +209,7 @@ impl Decoder {
     #[new]
     #[pyo3(signature = (*, level=None, max_memory=None, max_vertices=None))]
     fn new(level: Option<u32>, max_memory: Option<u64>, max_vertices: Option<u32>) -> Self {
-        Self(lwc::Decoder::with_options(decode_options(level, max_memory, max_vertices)))
+        Self(lwc::Decoder::with_options(options::decode(level, max_memory, max_vertices)))
     }
 
     /// Takes the next bytes, however they are cut, and applies every pass that is complete.
@@ -234,9 +218,16 @@ impl Decoder {
         Ok(updates.into_iter().map(Update::from).collect())
     }
 
-    /// Vertices and faces of the finest complete mesh; None before the base mesh.
-    fn mesh<'py>(&self, py: Python<'py>) -> PyResult<Option<Arrays<'py>>> {
-        self.0.mesh().map(|mesh| arrays(py, mesh.to_tri_mesh())).transpose()
+    /// The finest complete mesh, a lwc.Mesh; None before the base mesh. Attributes are collected anew by each call,
+    /// unless they are not wanted.
+    #[pyo3(signature = (*, attributes=true))]
+    fn mesh<'py>(&self, py: Python<'py>, attributes: bool) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let found = if attributes {
+            self.0.to_tri_mesh_with_attributes()
+        } else {
+            self.0.mesh().map(|mesh| (mesh.to_tri_mesh(), Attributes::default()))
+        };
+        found.map(|found| attributes::mesh(py, found)).transpose()
     }
 
     /// What the stream says of itself; None before its table of passes has come.
@@ -247,6 +238,11 @@ impl Decoder {
     /// Checksum of the mesh, equal on every platform; None before the base mesh.
     fn checksum(&self) -> Option<u32> {
         self.0.mesh().map(|mesh| mesh.checksum())
+    }
+
+    /// Checksum of the values of all attributes, equal on every platform; 0 without any.
+    fn attribute_checksum(&self) -> u32 {
+        self.0.attribute_checksum()
     }
 
     /// True once the last pass of the stream, or of the wanted level, has been applied.

@@ -149,6 +149,135 @@ def test_the_last_good_mesh_survives_damage():
     assert caught.value.kind == "Failed"
 
 
+def square():
+    """Two triangles with a seam along their common edge."""
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    uv = np.array([[0, 0], [1, 0], [1, 1], [0.5, 0.5], [0.75, 0.25]], np.float32)
+    return vertices, faces, lwc.Attribute(uv, "corner", "texcoord", set=2, indices=[0, 1, 2, 3, 4, -1])
+
+
+def test_attributes_of_every_domain_come_back():
+    vertices, faces, uv = square()
+    attributes = {
+        "heat": [1.5, 2.5, 3.5, 4.5],
+        "rgb": lwc.Attribute(np.arange(12, dtype=np.uint8).reshape(4, 3), kind="color", normalized=True),
+        "uv": uv,
+        "part": lwc.Attribute(["left", "right"], "face", "group"),
+        "number": lwc.Attribute(np.array([-7, 70000], np.int64), "face"),
+        "n": lwc.Attribute(np.tile([0, 0, 1.0], (2, 3, 1)), "corner", "normal"),
+    }
+    stream = lwc.encode(vertices, faces, attributes=attributes, lossless=True, keep_order=True, uv_bits=16)
+    mesh = lwc.decode(stream)
+    assert np.array_equal(mesh.vertices, vertices) and np.array_equal(mesh.faces, faces)
+    assert list(mesh.attributes) == list(attributes)
+    found = mesh.attributes
+    assert found["heat"].elements().shape == (4,) and found["heat"].domain == "vertex"
+    assert np.allclose(found["heat"].elements(), attributes["heat"], atol=1e-3)
+    assert found["rgb"].values.dtype == np.uint8 and (found["rgb"].kind, found["rgb"].normalized) == ("color", True)
+    assert np.array_equal(found["rgb"].elements(), attributes["rgb"].values)
+    assert (found["uv"].kind, found["uv"].set, found["uv"].values.dtype) == ("texcoord", 2, np.float32)
+    assert np.allclose(found["uv"].elements(-1), uv.elements(-1), atol=1e-4)
+    assert list(found["uv"].indices[-1:]) == [-1] and found["uv"].elements(-1)[5, 0] == -1
+    assert list(found["part"].elements()) == ["left", "right"]
+    assert found["number"].values.dtype == np.int32 and list(found["number"].elements()) == [-7, 70000]
+    assert np.array_equal(found["n"].elements(), np.tile([0, 0, 1.0], (6, 1)))
+    assert [a["name"] for a in lwc.info(stream)["attributes"]] == list(attributes)
+
+
+def test_attributes_are_there_at_every_level():
+    vertices, faces = torus()
+    colour = ((np.sin(3 * vertices) + 1) * 120).astype(np.uint8)
+    stream = lwc.encode(vertices, faces, attributes={"c": lwc.Attribute(colour, kind="color")})
+    decoder = lwc.Decoder()
+    for at in range(0, len(stream), 500):
+        if decoder.push(stream[at : at + 500]):
+            mesh = decoder.mesh()
+            assert mesh.attributes["c"].elements().shape == mesh.vertices.shape
+    assert decoder.mesh(attributes=False).attributes == {}
+    early = lwc.decode(stream, level=2)
+    assert early.attributes["c"].elements().shape == early.vertices.shape
+    # Each vertex has the colour of the nearest one of the original, exactly.
+    whole = lwc.decode(stream)
+    nearest = np.linalg.norm(vertices[:, None] - whole.vertices[None], axis=-1).argmin(1)
+    assert np.array_equal(whole.attributes["c"].elements()[nearest], colour)
+
+
+def test_options_reach_the_encoder():
+    vertices, faces = torus()
+    usual = lwc.encode(vertices, faces, descriptor=None)
+    assert lwc.info(lwc.encode(vertices, faces, profile="fast"))["profile"] == "fast"
+    assert lwc.encode(vertices, faces, effort=0) != usual
+    loose = np.concatenate([vertices, [[9, 9, 9]]])
+    assert len(lwc.decode(lwc.encode(loose, faces, keep_isolated=True)).vertices) == len(loose)
+    degenerate = np.concatenate([faces, [[0, 0, 1]]])
+    assert len(lwc.decode(lwc.encode(vertices, degenerate, keep_degenerate=True)).faces) == len(degenerate)
+    kept = lwc.decode(lwc.encode(vertices, faces, lossless=True, keep_order=True))
+    assert np.array_equal(kept.vertices, vertices) and np.array_equal(kept.faces, faces)
+    with pytest.raises(TypeError, match="unexpected keyword argument 'quality'"):
+        lwc.encode(vertices, faces, quality=3)
+
+
+@pytest.mark.parametrize(
+    "attribute, kind",
+    [
+        (lwc.Attribute([1, 2, 3]), "Attribute"),
+        (lwc.Attribute([1.0], indices=[0, 0, 0, 1]), "Attribute"),
+        (lwc.Attribute([1.0], indices=[0, 0, 0, -2]), "Attribute"),
+        (lwc.Attribute([1, 2, 3, 2**40]), None),
+        (lwc.Attribute([1, 2, 3, 4], "edge"), None),
+        (lwc.Attribute([1, 2, 3, 4], kind="taste"), None),
+        (lwc.Attribute([1j, 2, 3, 4]), None),
+    ],
+)
+def test_attributes_that_fit_nothing_are_refused(attribute, kind):
+    vertices, faces, _ = square()
+    with pytest.raises(ValueError) as caught:
+        lwc.encode(vertices, faces, attributes={"a": attribute})
+    assert getattr(caught.value, "kind", None) == kind
+
+
+def recorded_attributes():
+    found = {}
+    for line in (GOLDEN / "attributes.txt").read_text().splitlines():
+        name, number, checksum = line.split()
+        if number != "end":
+            found.setdefault(name, []).append(int(checksum, 16))
+    return found
+
+
+@pytest.mark.parametrize("name, checksums", recorded_attributes().items())
+def test_attributes_of_golden_streams_have_their_checksums(name, checksums):
+    stream = (GOLDEN / name).read_bytes()
+    decoder, at, found = lwc.Decoder(), 0, []
+    for entry in lwc.info(stream)["passes"]:
+        decoder.push(stream[at : entry["end"]])
+        at = entry["end"]
+        found.append(decoder.attribute_checksum())
+    assert found == checksums
+
+
+def test_a_scene_has_its_meshes_in_their_places():
+    scene = lwc.decode_scene((GOLDEN / "scene.lwc").read_bytes())
+    assert [len(mesh.faces) for mesh in scene.meshes] == [4, 20]
+    assert all(mesh.faces.max() == len(mesh.vertices) - 1 for mesh in scene.meshes)
+    # The second one has the exponent −2 in the stream.
+    assert np.ptp(scene.meshes[1].vertices, axis=0).min() > 6
+    assert [(i.mesh, i.name) for i in scene.instances] == [(0, ""), (1, "Baum"), (1, "turned"), (0, "exact")]
+    assert np.array_equal(scene.instances[0].transform, np.eye(4))
+    assert np.array_equal(scene.instances[1].transform[:, 3], [2.5, 0, 0, 1])
+    assert '"north"' in scene.materials and scene.images == [b"\1\2\3"]
+    assert set(scene.meshes[0].attributes) == {"usemtl"}
+
+
+def test_a_mesh_alone_is_a_scene_of_one_instance():
+    stream = lwc.encode(*torus(), attributes={"x": torus()[0][:, 0]})
+    scene = lwc.decode_scene(stream, level=3)
+    assert len(scene.meshes) == len(scene.instances) == 1
+    assert np.array_equal(scene.meshes[0].vertices, lwc.decode(stream, level=3).vertices)
+    assert list(scene.meshes[0].attributes) == ["x"] and scene.materials is None
+
+
 def test_the_example_with_trimesh_runs(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["with_trimesh.py"])
     runpy.run_path(str(Path(__file__).parents[1] / "examples" / "with_trimesh.py"), run_name="__main__")

@@ -16,6 +16,7 @@ const PAGE: &[u8] = include_bytes!("../../../web/viewer/index.html");
 const SCRIPT: &[u8] = include_bytes!("../../../web/viewer/embedded/viewer.js");
 const WORKER: &[u8] = include_bytes!("../../../web/viewer/embedded/worker.js");
 const DECODER: &[u8] = include_bytes!("../../../web/viewer/embedded/lwc.wasm");
+const DECODER_OF_ASSETS: &[u8] = include_bytes!("../../../web/viewer/embedded/lwc-assets.wasm");
 
 /// Reads or encodes the model, then serves until the program is stopped.
 pub fn run(args: &View, ui: &Ui) -> anyhow::Result<()> {
@@ -49,6 +50,7 @@ fn answer(request: &Request, model: &Model, port: u16) -> Answer {
         "/viewer.js" => Answer::asset("text/javascript", SCRIPT),
         "/worker.js" => Answer::asset("text/javascript", WORKER),
         "/lwc.wasm" => Answer::asset("application/wasm", DECODER),
+        "/lwc-assets.wasm" => Answer::asset("application/wasm", DECODER_OF_ASSETS),
         "/model.lwc" => Answer::ranged("model/vnd.lwc", model.bytes(), request.range.as_deref(), model.tag()),
         "/about.json" => Answer::json(&model.about()),
         "/quality.json" => Answer::json(&model.quality()),

@@ -6,6 +6,7 @@ use super::super::input::read_mesh;
 use super::super::ui::Ui;
 use anyhow::Context;
 use lwc::descriptors::{Descriptor, evaluate, mean_edge_length};
+use lwc::mesh::Semantic;
 use lwc::metrics::{CompareOptions, compare};
 use lwc::{DecodeOptions, Decoder, EncodeOptions, Limits, StreamInfo, TriMesh};
 use serde_json::{Value, json};
@@ -66,7 +67,13 @@ impl Model {
     }
 
     pub fn about(&self) -> Value {
-        json!({ "name": self.name, "bytes": self.bytes.len(), "descriptor": self.descriptor.name() })
+        let info = StreamInfo::read(&self.bytes).ok().flatten();
+        json!({
+            "name": self.name,
+            "bytes": self.bytes.len(),
+            "descriptor": self.descriptor.name(),
+            "assets": info.is_some_and(|info| has_assets(&info)),
+        })
     }
 
     /// Decibels of the passes, `null` where they are not known yet; measuring begins with the first call.
@@ -93,6 +100,12 @@ impl Model {
     }
 }
 
+/// Whether there is something beside the surface that the page shows.
+fn has_assets(info: &StreamInfo) -> bool {
+    let is_shown = |semantic| matches!(semantic, Semantic::Color(_) | Semantic::Normal);
+    info.scene().is_some() || info.attributes().iter().any(|attribute| is_shown(attribute.semantic))
+}
+
 fn encode(args: &View, ui: &Ui) -> anyhow::Result<Vec<u8>> {
     let file = read_mesh(&args.input, ui)?;
     let mut options = EncodeOptions::default();
@@ -100,7 +113,7 @@ fn encode(args: &View, ui: &Ui) -> anyhow::Result<Vec<u8>> {
     options.window = args.scale.window.window();
     let bar = ui.bar("encoding");
     let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
-    Ok(lwc::encode_with_progress(&file.mesh, &options, &progress)?.bytes)
+    Ok(lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress)?.bytes)
 }
 
 /// Compares every pass with the last one.

@@ -1,11 +1,11 @@
 /** The page of `lwc view`. @module */
 
 import {
-  BufferAttribute, Color, DirectionalLight, HemisphereLight, Mesh, MeshStandardMaterial, PerspectiveCamera,
-  Scene, WebGLRenderer,
+  Box3, BufferAttribute, Color, DirectionalLight, HemisphereLight, Mesh, MeshStandardMaterial, PerspectiveCamera,
+  Scene, Sphere, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { LWCLoader, RefinedGeometry, type Load, type Refinement } from '../../src/loader.js';
+import { LWCLoader, RefinedGeometry, SceneGroup, type Load, type Refinement } from '../../src/loader.js';
 import { Kept, throttle } from './network.js';
 import { Wires } from './wires.js';
 
@@ -45,6 +45,8 @@ mesh.frustumCulled = false;
 mesh.visible = wire.visible = false;
 material.polygonOffsetFactor = material.polygonOffsetUnits = 1;
 scene.add(mesh, wire);
+/** The meshes of a scene in their places, in place of `mesh`. */
+let places: SceneGroup | undefined;
 const controls = new OrbitControls(camera, canvas);
 controls.enableDamping = true;
 
@@ -83,7 +85,9 @@ function resize(): void {
 }
 
 function frame(geometry: RefinedGeometry): void {
-  const { center, radius } = geometry.boundingSphere!;
+  const { center, radius } = places
+    ? new Box3().setFromObject(places).getBoundingSphere(new Sphere())
+    : geometry.boundingSphere!;
   const narrow = Math.min(1, camera.aspect);
   const distance = (radius * 0.95) / Math.sin((camera.fov * Math.PI) / 360) / narrow;
   camera.position.set(center.x + distance * 0.45, center.y + distance * 0.3, center.z + distance * 0.84);
@@ -112,6 +116,7 @@ function start(): void {
   kept.clear();
   live?.geometry.dispose();
   live = undefined;
+  removePlaces();
   isScrubbed = false;
   message('');
   started = performance.now();
@@ -138,8 +143,8 @@ function start(): void {
       const isFirst = !live;
       live = { geometry, refinement };
       history.push({ milliseconds: performance.now() - started, ...counts(refinement) });
-      if (isFirst) frame(geometry);
       if (!isScrubbed) show(geometry, refinement);
+      if (isFirst) frame(geometry);
     },
   );
   load = mine;
@@ -148,15 +153,30 @@ function start(): void {
 }
 
 function show(geometry: RefinedGeometry, refinement: Refinement): void {
-  if (mesh.geometry !== geometry) {
-    mesh.geometry = geometry;
-    paint();
+  const isOther = mesh.geometry !== geometry;
+  mesh.geometry = geometry;
+  if (isOther || loader.attributes) paint();
+  if (geometry.scene && (isOther || !places)) {
+    removePlaces();
+    scene.add((places = new SceneGroup(geometry, material)));
   }
-  mesh.visible = true;
+  places?.update();
+  setVisible(true);
   showWires();
   shown = refinement;
   redraw();
   facts();
+}
+
+function removePlaces(): void {
+  places?.removeFromParent();
+  places?.dispose();
+  places = undefined;
+}
+
+function setVisible(isVisible: boolean): void {
+  mesh.visible = isVisible && !places;
+  if (places) places.visible = isVisible;
 }
 
 const history: { milliseconds: number; bytes: number; vertices: number; faces: number }[] = [];
@@ -205,7 +225,8 @@ async function scrub(): Promise<void> {
       }
     } catch (error) {
       // Too few bytes for a mesh: nothing to draw.
-      mesh.visible = wire.visible = false;
+      setVisible(false);
+      wire.visible = false;
       redraw();
       message((error as Error).message);
       continue;
@@ -326,6 +347,8 @@ function showWires(): void {
   wire.visible = element<HTMLInputElement>('wire').checked && mesh.visible;
   // Behind the lines only: at silhouettes the far side shines through what is set back.
   material.polygonOffset = wire.visible;
+  // The lines of a scene are in many places.
+  material.wireframe = places !== undefined && element<HTMLInputElement>('wire').checked;
   redraw();
 }
 element('flat').addEventListener('change', () => {
@@ -345,24 +368,36 @@ element('colours').addEventListener('change', async () => {
 /** From the smooth parts, blue, to the salient, yellow. */
 const SCALE = [0x2b3f8c, 0x2f7ea8, 0x48b29a, 0xa9d66b, 0xffd84a].map((hex) => new Color(hex));
 
+/** The colours of a stream while those of the descriptor are in their place. */
+const stored = new WeakMap<RefinedGeometry, BufferAttribute>();
+
 /** Vertices keep their numbers, so the colours of the finest mesh fit every coarser one. */
 function paint(): void {
   const { geometry } = mesh;
+  if (!geometry) return;
   const isWanted = element<HTMLInputElement>('colours').checked && colours !== undefined;
-  if (isWanted && geometry && !geometry.hasAttribute('color')) {
+  const current = geometry.getAttribute('color') as BufferAttribute | undefined;
+  // Those of a stream have opacity, too.
+  if (current?.itemSize === 4) stored.set(geometry, current);
+  const own = stored.get(geometry);
+  if (isWanted && current?.itemSize !== 3) {
     const vertices = geometry.getAttribute('position').count;
     const array = new Uint8Array(3 * vertices);
     const colour = new Color();
     for (let v = 0; v < vertices; v += 1) {
-      const place = ((colours![v] ?? 0) / 255) * (SCALE.length - 1);
+      const place = ((colours![geometry.sources?.[v] ?? v] ?? 0) / 255) * (SCALE.length - 1);
       const left = Math.min(Math.floor(place), SCALE.length - 2);
       colour.lerpColors(SCALE[left]!, SCALE[left + 1]!, place - left);
       array.set([colour.r * 255, colour.g * 255, colour.b * 255], 3 * v);
     }
     geometry.setAttribute('color', new BufferAttribute(array, 3, true));
+  } else if (!isWanted && own) {
+    geometry.setAttribute('color', own);
   }
-  material.vertexColors = isWanted;
-  material.color.set(isWanted ? 0xffffff : 0xc9ced6);
+  places?.update();
+  const isColoured = isWanted || own !== undefined;
+  material.vertexColors = isColoured;
+  material.color.set(isColoured ? 0xffffff : 0xc9ced6);
   material.needsUpdate = true;
   redraw();
 }
@@ -370,7 +405,11 @@ function paint(): void {
 async function about(): Promise<void> {
   const response = await fetch('about.json').catch(() => undefined);
   if (!response?.ok) return;
-  const { name, descriptor } = (await response.json()) as { name: string; descriptor: string };
+  const { name, descriptor, assets } = (await response.json()) as {
+    name: string; descriptor: string; assets?: boolean;
+  };
+  // Only what has colours, normals or places needs the larger module.
+  loader.attributes = assets ?? false;
   element('name').textContent = document.title = name;
   element('descriptor').textContent = descriptor;
 }
@@ -400,6 +439,9 @@ const record = {
   get geometry() {
     return mesh.geometry;
   },
+  get places() {
+    return places;
+  },
 };
 Object.assign(globalThis, { lwc: record });
 
@@ -407,6 +449,5 @@ if (parameters.has('bandwidth')) bandwidth.value = String(Math.log10(Number(para
 addEventListener('resize', resize);
 setBandwidth();
 resize();
-void about();
 void watchQuality();
-start();
+void about().finally(start);

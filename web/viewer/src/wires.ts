@@ -19,7 +19,8 @@ export class Wires extends LineSegments {
   /** Takes over what has changed since the last call. */
   follow(geometry: RefinedGeometry): void {
     const triangles = geometry.index!;
-    if (geometry !== this.#followed) {
+    const isOther = this.geometry.getAttribute('position') !== geometry.getAttribute('position');
+    if (geometry !== this.#followed || isOther) {
       this.geometry.dispose();
       this.geometry = new BufferGeometry();
       this.geometry.setAttribute('position', geometry.getAttribute('position'));

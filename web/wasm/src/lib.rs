@@ -5,6 +5,10 @@
 //! many bytes as it asked [`input`] for. There is no `unsafe` block; the attribute that exports a name
 //! needs the word because two crates could export the same one, and nothing else is linked here.
 
+#[cfg(feature = "assets")]
+mod assets;
+#[cfg(feature = "assets")]
+mod drawing;
 mod shading;
 mod slot;
 

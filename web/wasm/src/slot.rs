@@ -19,6 +19,8 @@ pub struct Slot {
     report: Vec<u32>,
     info: Vec<f64>,
     message: String,
+    #[cfg(feature = "assets")]
+    assets: crate::assets::Assets,
 }
 
 impl Slot {
@@ -33,6 +35,8 @@ impl Slot {
             report: Vec::new(),
             info: Vec::new(),
             message: String::new(),
+            #[cfg(feature = "assets")]
+            assets: crate::assets::Assets::default(),
         }
     }
 
@@ -165,6 +169,31 @@ impl Slot {
     pub fn expected_error(&mut self) -> f64 {
         self.prepare(usize::MAX);
         self.shading.as_ref().map_or(f64::NAN, shading::Shading::expected_error)
+    }
+
+    /// The mesh with its attributes as it is now, ready to be drawn.
+    #[cfg(feature = "assets")]
+    pub fn draw(&mut self) -> &crate::assets::Assets {
+        self.prepare(usize::MAX);
+        let normals = self.shading.as_ref().map_or(&[][..], |shading| shading.normals());
+        self.assets.draw(&self.decoder, &self.positions, normals);
+        &self.assets
+    }
+
+    #[cfg(feature = "assets")]
+    pub fn assets(&self) -> &crate::assets::Assets {
+        &self.assets
+    }
+
+    /// Bytes of attributes decoded so far: they come behind the pass that they belong to.
+    #[cfg(feature = "assets")]
+    pub fn attribute_bytes(&self) -> u64 {
+        self.decoder.attribute_bytes().iter().sum()
+    }
+
+    #[cfg(feature = "assets")]
+    pub fn attribute_checksum(&self) -> u32 {
+        self.decoder.attribute_checksum()
     }
 
     pub fn mesh(&self) -> Option<LevelMesh<'_>> {

@@ -1,14 +1,31 @@
 """Progressive codec for triangle meshes."""
 
-from ._lwc import DecodeError, Decoder, EncodeError, Update, __version__, decode, descriptors, encode, info
+from ._lwc import (
+    DecodeError,
+    Decoder,
+    EncodeError,
+    Update,
+    __version__,
+    decode,
+    decode_scene,
+    descriptors,
+    encode,
+    info,
+)
+from ._types import Attribute, Instance, Mesh, Scene
 
 __all__ = [
+    "Attribute",
     "DecodeError",
     "Decoder",
     "EncodeError",
+    "Instance",
+    "Mesh",
+    "Scene",
     "Update",
     "__version__",
     "decode",
+    "decode_scene",
     "descriptors",
     "encode",
     "info",

@@ -1,7 +1,9 @@
-from typing import Any, TypedDict
+from collections.abc import Mapping
+from typing import TypedDict
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from ._types import Attribute as Attribute, Instance as Instance, Mesh as Mesh, Scene as Scene
 
 __version__: str
 
@@ -24,19 +26,30 @@ class Pass(TypedDict):
     bytes: int
     end: int
 
+class AttributeInfo(TypedDict):
+    name: str
+    kind: str
+    set: int
+    domain: str
+    components: int
+    bits: int
+
 class Info(TypedDict):
     precision: int
     origin: tuple[float, float, float]
     side: float
     levels: int
     total_bytes: int
+    profile: str
     passes: list[Pass]
+    attributes: list[AttributeInfo]
 
 def descriptors() -> list[str]: ...
 def encode(
     vertices: ArrayLike,
     faces: ArrayLike,
     *,
+    attributes: Mapping[str, Attribute | ArrayLike] | None = None,
     descriptor: str | None = None,
     quantization: int | None = None,
     levels: int | None = None,
@@ -46,6 +59,16 @@ def encode(
     partition: str | None = None,
     optimize: str | None = None,
     steps_per_edge: float | None = None,
+    normal_bits: int | None = None,
+    uv_bits: int | None = None,
+    color_bits: int | None = None,
+    generic_bits: int | None = None,
+    profile: str | None = None,
+    effort: int | None = None,
+    lossless: bool = False,
+    keep_order: bool = False,
+    keep_isolated: bool = False,
+    keep_degenerate: bool = False,
 ) -> bytes: ...
 def decode(
     stream: bytes,
@@ -53,7 +76,14 @@ def decode(
     level: int | None = None,
     max_memory: int | None = None,
     max_vertices: int | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.uint32]]: ...
+) -> Mesh: ...
+def decode_scene(
+    stream: bytes,
+    *,
+    level: int | None = None,
+    max_memory: int | None = None,
+    max_vertices: int | None = None,
+) -> Scene: ...
 def info(stream: bytes) -> Info | None: ...
 
 class Update:
@@ -72,9 +102,10 @@ class Decoder:
         self, *, level: int | None = None, max_memory: int | None = None, max_vertices: int | None = None
     ) -> None: ...
     def push(self, piece: bytes) -> list[Update]: ...
-    def mesh(self) -> tuple[NDArray[np.float64], NDArray[np.uint32]] | None: ...
+    def mesh(self, *, attributes: bool = True) -> Mesh | None: ...
     def info(self) -> Info | None: ...
     def checksum(self) -> int | None: ...
+    def attribute_checksum(self) -> int: ...
     @property
     def is_complete(self) -> bool: ...
     @property

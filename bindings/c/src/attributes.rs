@@ -1,0 +1,391 @@
+//! What a mesh carries besides positions and triangles. Tables and rows are copied in and out; texts belong to the mesh.
+
+use crate::error::{Status, guard, tell};
+use crate::{Mesh, elements, object, put};
+use lwc::mesh::{self, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
+use std::ffi::{CStr, CString, c_char, c_void};
+
+/// What the values mean.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AttributeKind {
+    /// Anything; the name says what.
+    Generic = 0,
+    /// Direction away from the surface, three components.
+    Normal = 1,
+    /// Place in a texture.
+    TexCoord = 2,
+    /// Red, green, blue and perhaps opacity.
+    Color = 3,
+    /// Which material.
+    Material = 4,
+    /// Which group of triangles.
+    Group = 5,
+    /// Which object, or part of a scene.
+    Object = 6,
+}
+
+/// What has a value.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AttributeDomain {
+    /// Every vertex.
+    Vertex = 0,
+    /// Every corner: element 3 t + i is corner i of triangle t.
+    Corner = 1,
+    /// Every triangle.
+    Face = 2,
+}
+
+/// The type of the values.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // Each is what its name says.
+pub enum AttributeType {
+    I8 = 0,
+    U8 = 1,
+    I16 = 2,
+    U16 = 3,
+    I32 = 4,
+    U32 = 5,
+    F32 = 6,
+    F64 = 7,
+    /// Strings, UTF-8, each ends in a zero.
+    Names = 8,
+}
+
+/// Row of an element that has no value.
+pub const LWC_NO_ROW: u32 = u32::MAX;
+
+// The header wants the number itself.
+const _: () = assert!(LWC_NO_ROW == NO_ROW);
+
+/// An attribute: a table of values, and which element has which row of it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Attribute {
+    /// What the file calls it, UTF-8, ends in a zero.
+    pub name: *const c_char,
+    /// An LwcAttributeKind.
+    pub kind: u32,
+    /// Of texture coordinates and colours, which of several.
+    pub set: u32,
+    /// An LwcAttributeDomain.
+    pub domain: u32,
+    /// An LwcAttributeType.
+    pub scalar: u32,
+    /// Values of a row, 1 to 16; 1 for names.
+    pub components: u32,
+    /// Whether integers are fractions of the largest of their type.
+    pub normalized: bool,
+    /// Rows of the table.
+    pub num_rows: usize,
+}
+
+/// Texts as C wants them, of one attribute.
+pub struct Texts {
+    name: CString,
+    names: Vec<CString>,
+}
+
+const SCALARS: [ScalarType; 8] = [
+    ScalarType::I8,
+    ScalarType::U8,
+    ScalarType::I16,
+    ScalarType::U16,
+    ScalarType::I32,
+    ScalarType::U32,
+    ScalarType::F32,
+    ScalarType::F64,
+];
+const DOMAINS: [Domain; 3] = [Domain::Vertex, Domain::Corner, Domain::Face];
+
+impl Texts {
+    pub fn of(attributes: &Attributes) -> Vec<Self> {
+        attributes.list.iter().map(Self::new).collect()
+    }
+
+    fn new(attribute: &mesh::Attribute) -> Self {
+        let names = attribute.values.names().unwrap_or_default();
+        Self { name: text(&attribute.name), names: names.iter().map(|name| text(name)).collect() }
+    }
+}
+
+/// A text up to its first zero, which ends it for C.
+fn text(text: &str) -> CString {
+    CString::new(text.split('\0').next().unwrap_or_default()).unwrap_or_default()
+}
+
+fn misfit(sentence: &str) -> Status {
+    tell(Status::Attribute, sentence)
+}
+
+fn semantic(kind: u32, set: u32) -> Option<Semantic> {
+    Some(match kind {
+        0 => Semantic::Generic,
+        1 => Semantic::Normal,
+        2 => Semantic::TexCoord(set),
+        3 => Semantic::Color(set),
+        4 => Semantic::Material,
+        5 => Semantic::Group,
+        6 => Semantic::Object,
+        _ => return None,
+    })
+}
+
+fn kind(semantic: Semantic) -> (AttributeKind, u32) {
+    match semantic {
+        Semantic::Normal => (AttributeKind::Normal, 0),
+        Semantic::TexCoord(set) => (AttributeKind::TexCoord, set),
+        Semantic::Color(set) => (AttributeKind::Color, set),
+        Semantic::Material => (AttributeKind::Material, 0),
+        Semantic::Group => (AttributeKind::Group, 0),
+        Semantic::Object => (AttributeKind::Object, 0),
+        _ => (AttributeKind::Generic, 0),
+    }
+}
+
+/// The text behind a pointer.
+///
+/// # Safety
+/// `pointer` is null, or a string that ends in a zero.
+unsafe fn string(pointer: *const c_char) -> Result<String, Status> {
+    if pointer.is_null() {
+        return Err(Status::NullPointer);
+    }
+    // SAFETY: by the contract above, and not null.
+    Ok(unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
+}
+
+/// A copy of a table.
+///
+/// # Safety
+/// `values` has `count` elements of the type, strings for names.
+unsafe fn table(scalar: u32, values: *const c_void, count: usize) -> Result<Values, Status> {
+    /// # Safety
+    /// As of `table`.
+    unsafe fn copy<T: Clone>(values: *const c_void, count: usize) -> Result<Vec<T>, Status> {
+        // SAFETY: by the contract above.
+        Ok(unsafe { elements::<T>(values.cast(), count) }?.to_vec())
+    }
+    // SAFETY: by the contract above.
+    unsafe {
+        Ok(match scalar {
+            0 => Values::I8(copy(values, count)?),
+            1 => Values::U8(copy(values, count)?),
+            2 => Values::I16(copy(values, count)?),
+            3 => Values::U16(copy(values, count)?),
+            4 => Values::I32(copy(values, count)?),
+            5 => Values::U32(copy(values, count)?),
+            6 => Values::F32(copy(values, count)?),
+            7 => Values::F64(copy(values, count)?),
+            8 => {
+                let names: Vec<*const c_char> = copy(values, count)?;
+                Values::Names(names.into_iter().map(|name| string(name)).collect::<Result<_, _>>()?)
+            }
+            _ => return Err(misfit("there is no such type of values")),
+        })
+    }
+}
+
+/// Gives a mesh an attribute: a copy of `values`, num_rows × components of the type of `what` (for names pointers to
+/// strings), and of `rows`, for each element the row it has or LWC_NO_ROW. `rows` may be null: element k has row k.
+/// There are as many elements as the mesh has vertices, corners (3 × triangles) or triangles.
+///
+/// # Safety
+/// `mesh` was handed out by this library, has not been freed and is used by this thread alone; `what` can be read and
+/// its name ends in a zero; `values` and `rows` have that many elements and are aligned for their type.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_mesh_add_attribute(
+    mesh: *mut Mesh,
+    what: *const Attribute,
+    values: *const c_void,
+    rows: *const u32,
+) -> Status {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let (mesh, what) = unsafe { (object(mesh)?, what.as_ref().ok_or(Status::NullPointer)?) };
+        let domain = DOMAINS.get(what.domain as usize).ok_or_else(|| misfit("there is no such domain"))?;
+        let semantic = semantic(what.kind, what.set).ok_or_else(|| misfit("there is no such kind"))?;
+        let count = what.num_rows.checked_mul(what.components as usize);
+        let count = count.ok_or_else(|| misfit("the table is too large"))?;
+        // SAFETY: the caller's promise.
+        let (name, values) = unsafe { (string(what.name)?, table(what.scalar, values, count)?) };
+        let num_elements = domain.num_elements(&mesh.mesh);
+        // SAFETY: the caller's promise.
+        let rows = (!rows.is_null()).then(|| unsafe { elements(rows, num_elements) }.map(<[u32]>::to_vec));
+        let attribute = mesh::Attribute {
+            is_normalized: what.normalized,
+            indices: rows.transpose()?,
+            ..mesh::Attribute::new(name, semantic, *domain, what.components as usize, values)
+        };
+        attribute.validate(&mesh.mesh).map_err(|error| misfit(&error.to_string()))?;
+        mesh.texts.push(Texts::new(&attribute));
+        mesh.attributes.list.push(attribute);
+        Ok(())
+    })
+}
+
+/// Number of attributes; 0 for null.
+///
+/// # Safety
+/// `mesh` was handed out by this library and has not been freed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_mesh_num_attributes(mesh: *const Mesh) -> usize {
+    // SAFETY: the caller's promise.
+    unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.attributes.list.len())
+}
+
+/// An attribute of a mesh, with the texts that go with it.
+///
+/// # Safety
+/// `mesh` is null, or was handed out by this library and has not been freed.
+unsafe fn attribute<'a>(
+    mesh: *const Mesh,
+    index: usize,
+) -> Result<(&'a Mesh, &'a mesh::Attribute, &'a Texts), Status> {
+    // SAFETY: by the contract above.
+    let mesh = unsafe { mesh.as_ref() }.ok_or(Status::NullPointer)?;
+    let found = mesh.attributes.list.get(index).zip(mesh.texts.get(index));
+    found.map(|(attribute, texts)| (mesh, attribute, texts)).ok_or(Status::NothingToDo)
+}
+
+/// Index of the first attribute of this name; LWC_STATUS_NOTHING_TO_DO if there is none.
+///
+/// # Safety
+/// `mesh` was handed out by this library and has not been freed; `name` ends in a zero; `index` can be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_mesh_find_attribute(
+    mesh: *const Mesh,
+    name: *const c_char,
+    index: *mut usize,
+) -> Status {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let (mesh, name) = unsafe { (mesh.as_ref().ok_or(Status::NullPointer)?, string(name)?) };
+        let place = mesh.attributes.list.iter().position(|attribute| attribute.name == name);
+        // SAFETY: the caller's promise.
+        unsafe { put(index, place.ok_or(Status::NothingToDo)?) }
+    })
+}
+
+/// What an attribute is; its name is valid until the mesh is freed or gets another attribute.
+///
+/// # Safety
+/// `mesh` was handed out by this library and has not been freed; `found` can be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_mesh_attribute(
+    mesh: *const Mesh,
+    index: usize,
+    found: *mut Attribute,
+) -> Status {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let (_, attribute, texts) = unsafe { attribute(mesh, index) }?;
+        let (kind, set) = kind(attribute.semantic);
+        let place = |scalar| SCALARS.iter().position(|&other| other == scalar);
+        let scalar = attribute.values.scalar_type().and_then(place).unwrap_or(AttributeType::Names as usize);
+        let domain = DOMAINS.iter().position(|&domain| domain == attribute.domain).unwrap_or(0);
+        let what = Attribute {
+            name: texts.name.as_ptr(),
+            kind: kind as u32,
+            set,
+            domain: domain as u32,
+            scalar: scalar as u32,
+            components: attribute.num_components as u32,
+            normalized: attribute.is_normalized,
+            num_rows: attribute.num_rows(),
+        };
+        // SAFETY: the caller's promise.
+        unsafe { put(found, what) }
+    })
+}
+
+/// Copies the table of an attribute, num_rows × components numbers of its type, into a buffer of exactly that size in
+/// bytes. Not for names.
+///
+/// # Safety
+/// `mesh` was handed out by this library and has not been freed; `values` has `num_bytes` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_mesh_attribute_values(
+    mesh: *const Mesh,
+    index: usize,
+    values: *mut c_void,
+    num_bytes: usize,
+) -> Status {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let (_, attribute, _) = unsafe { attribute(mesh, index) }?;
+        let scalar = attribute.values.scalar_type();
+        let size = scalar.ok_or_else(|| misfit("names are no numbers"))?.num_bytes();
+        let count = attribute.values.len();
+        if num_bytes != size * count {
+            return Err(misfit(&format!("the table has {} bytes, the buffer {num_bytes}", size * count)));
+        }
+        let mut bytes: Vec<u8> = Vec::with_capacity(num_bytes);
+        for bits in (0..count).filter_map(|k| attribute.values.bits(k)) {
+            // The lowest bytes of a word, in the order of this machine.
+            let word = bits.to_ne_bytes();
+            bytes.extend(if cfg!(target_endian = "little") { &word[..size] } else { &word[8 - size..] });
+        }
+        // SAFETY: the caller's promise.
+        unsafe { copy_out(values.cast(), &bytes) }
+    })
+}
+
+/// Copies the row of each element, or LWC_NO_ROW, into an array of exactly as many elements as the mesh has of the
+/// attribute's domain.
+///
+/// # Safety
+/// `mesh` was handed out by this library and has not been freed; `rows` has `num_elements` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_mesh_attribute_rows(
+    mesh: *const Mesh,
+    index: usize,
+    rows: *mut u32,
+    num_elements: usize,
+) -> Status {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let (mesh, attribute, _) = unsafe { attribute(mesh, index) }?;
+        let count = attribute.domain.num_elements(&mesh.mesh);
+        if num_elements != count {
+            return Err(misfit(&format!("there are {count} elements, the array has {num_elements}")));
+        }
+        let row = |element| attribute.row(element).map_or(NO_ROW, |row| row as u32);
+        // SAFETY: the caller's promise.
+        unsafe { copy_out(rows, &(0..count).map(row).collect::<Vec<u32>>()) }
+    })
+}
+
+/// The name in a row of an attribute of names, valid until the mesh is freed or gets another attribute; null if there
+/// is none.
+///
+/// # Safety
+/// `mesh` was handed out by this library and has not been freed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_mesh_attribute_name(
+    mesh: *const Mesh,
+    index: usize,
+    row: usize,
+) -> *const c_char {
+    // SAFETY: the caller's promise.
+    let found = unsafe { attribute(mesh, index) };
+    let name = found.ok().and_then(|(_, _, texts)| texts.names.get(row));
+    name.map_or(std::ptr::null(), |name| name.as_ptr())
+}
+
+/// Fills an array of C.
+///
+/// # Safety
+/// `to` is null, or has as many elements as `from`.
+unsafe fn copy_out<T: Copy>(to: *mut T, from: &[T]) -> Result<(), Status> {
+    if to.is_null() && !from.is_empty() {
+        return Err(Status::NullPointer);
+    }
+    if !from.is_empty() {
+        // SAFETY: by the contract above, and not null; what C owns does not overlap with what we made.
+        unsafe { std::ptr::copy_nonoverlapping(from.as_ptr(), to, from.len()) };
+    }
+    Ok(())
+}
