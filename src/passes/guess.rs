@@ -23,13 +23,15 @@ pub(super) const SHARPNESS_FACTOR: f32 = 1.0 / SCALE_FACTOR;
 const FIRST_SCALES: [f32; NUM_CUES] = [-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3];
 /// Step of the scale models.
 const SCALE_RATE: f32 = 0.02;
-/// Step of the experts' weights, where they start and the least they get. The fourth lane is empty.
+/// Step of the experts' weights, where they start and the least they get.
 pub(super) const TRUST_RATE: f32 = 0.02;
-const FIRST_TRUST: Lanes = Lanes([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.0]);
-const LEAST_TRUST: Lanes = Lanes([0.02, 0.02, 0.02, 0.0]);
+const FIRST_TRUST: Lanes = Lanes([0.3, 0.3, 0.3, 0.1]);
+const LEAST_TRUST: Lanes = Lanes([0.02, 0.02, 0.02, 0.005]);
 pub(super) const TRUST_LEVELS: usize = 16;
 /// Steepest slope of the surface over the two axes coded first that is believed.
 const MAX_SLOPE: f32 = 4.0;
+/// The expert who says that a neighbour's coordinate comes again.
+const REPEATED: usize = 3;
 /// Bound on centres, far outside any grid.
 pub(super) const MAX_CENTRE: f32 = 1e9;
 
@@ -140,15 +142,25 @@ impl<'a> VertexGuess<'a> {
     /// Guesses all three coordinates as far as that is possible before one of them is known.
     #[inline(always)]
     pub(crate) fn new(models: &GuessModels, surroundings: &'a Surroundings) -> Self {
+        Self::with_outlook(models, surroundings, surroundings.neighbourhood.outlook())
+    }
+
+    /// The same where the outlook is not that of a whole ring.
+    #[inline(always)]
+    pub(crate) fn with_outlook(
+        models: &GuessModels,
+        surroundings: &'a Surroundings,
+        outlook: Outlook,
+    ) -> Self {
         let around = &surroundings.neighbourhood;
-        let Outlook { mean, features, normal, length } = around.outlook();
+        let Outlook { mean, features, normal, length } = outlook;
         let axes = axis_order(normal);
         let slopes = slopes(normal, axes);
         let frame = Frame::new(slopes, axes[ACROSS]);
         let mean = frame.of(mean);
         let features = features.map(|f| frame.of(f));
 
-        let [along, across] = &models.filters[surroundings.class()];
+        let [along, across] = &models.filters[surroundings.class];
         let (along, across) = (along.weights(), across.weights());
         let mut affine = mean;
         for i in 0..NUM_FEATURES {
@@ -203,6 +215,8 @@ impl<'a> VertexGuess<'a> {
             _ => log2(self.errors[0].abs() + self.errors[1].abs() + FLOOR),
         };
         let (by_spread, by_width) = (self.by_spread.0[axis], self.by_width.0[axis]);
+        let [median, mode] = [self.agreed.median, self.agreed.mode].map(|l| l.0[axis]);
+        let (repeated, distance) = self.repeated(axis, median - known);
         let cues = [
             Lanes::splat(1.0),
             Lanes::splat(self.log_length),
@@ -210,14 +224,14 @@ impl<'a> VertexGuess<'a> {
             Lanes::splat(by_tips),
             Lanes::splat(self.by_lean.0[axis]),
             Lanes::splat(by_known),
-            Lanes([by_spread, by_spread, by_width, 0.0]),
+            Lanes([by_spread, by_spread, by_width, log2(distance + FLOOR)]),
         ];
         let log_scales = models.scales[kind].predict(&cues);
         let trust_level = log_level(by_spread, 1.0, TRUST_LEVELS);
-        let [median, mode] = [self.agreed.median, self.agreed.mode].map(|l| l.0[axis]);
-        let centre = Lanes([self.affine.0[axis], median, mode, 0.0]);
+        let mut centre = Lanes([self.affine.0[axis], median, mode, 0.0]) - Lanes::splat(known);
+        centre.0[REPEATED] = repeated;
         let mixture = Mixture {
-            centre: (centre - Lanes::splat(known)).clamp(-MAX_CENTRE, MAX_CENTRE),
+            centre: centre.clamp(-MAX_CENTRE, MAX_CENTRE),
             sharpness: log_scales.map(|l| exp2(-l)) * SHARPNESS_FACTOR,
             weight: models.trust[kind][trust_level],
         };
@@ -239,6 +253,20 @@ impl<'a> VertexGuess<'a> {
         }
     }
 
+    /// The neighbours' coordinate that is closest to `median`, the first one if equal, and how far it lies from it: what is
+    /// drawn along an axis, or lies in a plane across it, repeats coordinates to the bit.
+    #[inline(always)]
+    fn repeated(&self, axis: usize, median: f32) -> (f32, f32) {
+        let (mut repeated, mut least) = (0.0, MAX_CENTRE);
+        for p in &self.surroundings.neighbourhood.ring {
+            let distance = (p.0[axis] - median).abs();
+            if distance < least {
+                (repeated, least) = (p.0[axis], distance);
+            }
+        }
+        (repeated, least)
+    }
+
     /// Learns a coordinate.
     #[inline(always)]
     pub(crate) fn settle(
@@ -250,7 +278,7 @@ impl<'a> VertexGuess<'a> {
     ) {
         let axis = guess.axis;
         let truth = value.wrapping_sub(self.surroundings.origin[axis]) as f32;
-        let filter = &mut models.filters[self.surroundings.class()][usize::from(kind == ACROSS)];
+        let filter = &mut models.filters[self.surroundings.class][usize::from(kind == ACROSS)];
         let per_length = 1.0 / self.length;
         let offset = (truth + guess.known) - self.mean.0[axis];
         filter.learn(self.features.map(|f| f.0[axis] * per_length), offset * per_length);
