@@ -1231,9 +1231,9 @@ class GuessModels:
     def __init__(self):
         start = [Single(w) for w in (-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3)]
         self.filters = [[Filter(), Filter()] for _ in range(7)]
-        self.scales = [[list(start) for _ in range(4)] for _ in range(3)]
-        trust = [Single(w) for w in (0.3, 0.3, 0.3, 0.1)]
-        self.trust = [[list(trust) for _ in range(16)] for _ in range(3)]
+        self.scales = [[list(start) for _ in range(3)] for _ in range(3)]
+        self.trust = [[[ONE / 3] * 3 for _ in range(16)] for _ in range(3)]
+        self.repeated = [[[[Single(0.2), 5] for _ in range(16)] for _ in range(5)] for _ in range(3)]
 
 
 def sum7(a, b):
@@ -1276,29 +1276,32 @@ class VertexGuess:
         self.by_known = log2(abs(self.errors[0]) + abs(self.errors[1]) + 0.35) if kind else ZERO
         self.by_spread, by_width = log2(spread + 0.35), log2(width + 0.35)
         cue = [ONE, self.log_length, self.by_ring, self.by_tips, by_lean, self.by_known]
-        repeated, distance = self.repeated(median - self.known)
-        zs = self.by_spread, self.by_spread, by_width, log2(distance + 0.35)
-        self.cues = [cue + [z] for z in zs]
+        repeated, distance, count = self.repeated(median - self.known)
+        self.cues = [cue + [z] for z in (self.by_spread, self.by_spread, by_width)]
         scales = models.scales[kind]
         self.logs = [Single(clamp(sum7(w, c), -4.0, 32.0)) for w, c in zip(scales, self.cues)]
+        self.logs.append(Single(-1.25))
         self.trust = models.trust[kind][level(self.by_spread, 1, 16)]
+        self.again = models.repeated[kind][min(count, 4)][level(log2(distance + 0.35), 1, 16)]
         centres = [c - self.known for c in (self.affine[axis], median, mode)] + [repeated]
         self.mixture = Mixture(
             [Single(clamp(c, -1e9, 1e9)) for c in centres],
             [exp2(-log) * (ONE / 0.85) for log in self.logs],
-            list(self.trust),
+            self.trust + [self.again[0]],
         )
-        peaks = [w * s for _, s, w in zip(*self.mixture)]
-        self.best = peaks.index(max(peaks))
+        peaks = [w * s for w, s in zip(self.trust, self.mixture.sharpness)]
+        self.best = 3 if self.again[0] > Single(0.2) else peaks.index(max(peaks))
         self.log_scale = self.logs[self.best]
 
     def repeated(self, median):
-        nearest, least = ZERO, Single(1e9)
+        nearest, least, count = ZERO, Single(1e9), 1
         for p in self.around.ring:
             distance = abs(p[self.axis] - median)
             if distance < least:
-                nearest, least = p[self.axis], distance
-        return nearest, least
+                nearest, least, count = p[self.axis], distance, 1
+            elif p[self.axis] == nearest:
+                count += 1
+        return nearest, least, count
 
     def learn(self, x):
         around, axis = self.around, self.axis
@@ -1318,9 +1321,15 @@ class VertexGuess:
             r = 1 + (d * d + ONE / 12) * (s * s)
             score.append(w * (s / (r * r)))
         f = 1 / total(score)
-        for i, least in enumerate((0.02, 0.02, 0.02, 0.005)):
-            trust = self.trust[i] + (score[i] * f - self.trust[i]) * 0.02
-            self.trust[i] = trust if trust > Single(least) else Single(least)
+        hit = score[3] * f
+        self.again[1] += 1
+        rate = max(1 / Single(self.again[1]), Single(0.01))
+        weight = self.again[0] + (hit - self.again[0]) * rate
+        self.again[0] = weight if weight > Single(0.02) else Single(0.02)
+        g = 1 / max(1 - hit, Single(1e-6))
+        for i in range(3):
+            trust = self.trust[i] + ((score[i] * f) * g - self.trust[i]) * (Single(0.02) * (1 - hit))
+            self.trust[i] = trust if trust > Single(0.02) else Single(0.02)
         self.position[axis] = y
         self.errors[self.kind] = distances[0]
 
