@@ -38,12 +38,16 @@ PARTS = {
         (GUESS, r"\[usize::from\(kind == ACROSS\)\]", "[0]"),
     ],
     "Prediction: the affine expert": [
-        (GUESS, r"FIRST_TRUST: Lanes = Lanes\(\[.*\]\)", "FIRST_TRUST: Lanes = Lanes([0.0, 0.5, 0.5, 0.0])"),
-        (GUESS, r"LEAST_TRUST: Lanes = Lanes\(\[.*\]\)", "LEAST_TRUST: Lanes = Lanes([0.0, 0.02, 0.02, 0.0])"),
+        (GUESS, r"FIRST_TRUST: Lanes = Lanes\(\[.*\]\)", "FIRST_TRUST: Lanes = Lanes([0.0, 0.45, 0.45, 0.1])"),
+        (GUESS, r"LEAST_TRUST: Lanes = Lanes\(\[.*\]\)", "LEAST_TRUST: Lanes = Lanes([0.0, 0.02, 0.02, 0.005])"),
     ],
     "Prediction: median and mode of simple guesses": [
-        (GUESS, r"FIRST_TRUST: Lanes = Lanes\(\[.*\]\)", "FIRST_TRUST: Lanes = Lanes([1.0, 0.0, 0.0, 0.0])"),
-        (GUESS, r"LEAST_TRUST: Lanes = Lanes\(\[.*\]\)", "LEAST_TRUST: Lanes = Lanes([0.02, 0.0, 0.0, 0.0])"),
+        (GUESS, r"FIRST_TRUST: Lanes = Lanes\(\[.*\]\)", "FIRST_TRUST: Lanes = Lanes([0.9, 0.0, 0.0, 0.1])"),
+        (GUESS, r"LEAST_TRUST: Lanes = Lanes\(\[.*\]\)", "LEAST_TRUST: Lanes = Lanes([0.02, 0.0, 0.0, 0.005])"),
+    ],
+    "Prediction: coordinates that neighbours repeat": [
+        (GUESS, r"FIRST_TRUST: Lanes = Lanes\(\[.*\]\)", "FIRST_TRUST: Lanes = Lanes([0.333, 0.333, 0.333, 0.0])"),
+        (GUESS, r"LEAST_TRUST: Lanes = Lanes\(\[.*\]\)", "LEAST_TRUST: Lanes = Lanes([0.02, 0.02, 0.02, 0.0])"),
     ],
     "Densities: experts weighed by how they did": [(GUESS, r"TRUST_RATE: f32 = .*;", "TRUST_RATE: f32 = 0.0;")],
     "Densities: scales learnt on the way": [(GUESS, r"SCALE_RATE: f32 = .*;", "SCALE_RATE: f32 = 0.0;")],

@@ -198,11 +198,11 @@ class Mesh:
         if d != NONE:
             self.across[d] = c
 
-    def check_base(self):
+    def check_base(self, num_vertices):
         """Finds corner_of and valence, and checks that each vertex has one fan."""
         faced = set()
-        count = [0] * len(self.cell)
-        self.corner_of = [NONE] * len(self.cell)
+        count = [0] * num_vertices
+        self.corner_of = [NONE] * num_vertices
         for c in range(len(self.across)):
             edge = (self.vertex(next_(c)), self.vertex(prev(c)))
             require(edge not in faced, "two base triangles run along the same edge")
@@ -492,10 +492,9 @@ def below(mixture, x):
     return total(w * tail((c - x) * s) for c, s, w in zip(*mixture))
 
 
-def total(experts):
-    """Of three or, for attributes, four."""
-    a, b, *rest = experts
-    return (a + b) + (rest[0] + rest[1] if len(rest) == 2 else rest[0])
+def total(four):
+    a, b, c, d = four
+    return (a + b) + (c + d)
 
 
 class Residuals:
@@ -552,15 +551,16 @@ class Residuals:
 
 # 7.1 Base mesh
 
-HAS_FACE, IS_NEW, IS_NEW_IN_SEED, IS_RIGHT, IS_LEFT = range(5)
+NEW, BESIDE_PIVOT, BESIDE_END, FAR = range(4)
 
 
 class Base:
     def __init__(self, coder, num_vertices, num_faces, precision):
-        self.coder, self.num_vertices, self.limit = coder, num_vertices, 1 << precision
-        self.size = [Single(self.limit / 8)] * 3
-        self.syntax, self.residuals = Plain(), Residuals()
-        self.gates, self.open = collections.deque(), {}
+        self.coder, self.num_vertices = coder, num_vertices
+        self.is_new_in_seed, self.has_face, self.far = Plain(), Mixed(2, 0.0, 250), Plain()
+        self.is_new, self.is_left, self.is_right = (Mixed(6, 0.0, 250) for _ in range(3))
+        self.gates, self.open, self.last_tip = collections.deque(), {}, NEW
+        self.faces, self.bound = [], []
         self.mesh = mesh = Mesh()
         mesh.precision = precision
         while len(mesh.triangle) < num_faces:
@@ -570,81 +570,128 @@ class Base:
                 gate = self.gates.popleft()
                 if mesh.across[gate] == NONE:
                     self.grow(gate)
-        require(len(mesh.cell) == num_vertices, "the base mesh has fewer vertices than announced")
-        mesh.check_base()
-        mesh.roughness = [(-16, -16)] * num_vertices
+        require(len(self.faces) == num_vertices, "the base mesh has fewer vertices than announced")
+        mesh.check_base(num_vertices)
+        place_base(coder, mesh)
 
     def seed(self):
         t = []
-        for i in range(3):
-            if not self.syntax.code(self.coder, IS_NEW_IN_SEED):
-                t.append(self.known())
-            elif i > 0:
-                t.append(self.new_vertex(2, self.mesh.cell[t[0]]))
-            elif self.mesh.cell:
-                t.append(self.new_vertex(1, self.mesh.cell[-1]))
-            else:
-                t.append(self.new_vertex(1, [self.limit // 2] * 3))
-        self.place(t)
+        for _ in range(3):
+            t.append(self.new_vertex() if self.is_new_in_seed.code(self.coder, 0) else self.known())
+        self.gates.extend(c for c in self.place(t) if c != NONE)
+
+    def degree(self, v):
+        return 10 if v == NONE else clamp(self.faces[v], 1, 10) - 1
 
     def grow(self, gate):
         mesh, coder = self.mesh, self.coder
-        if not self.syntax.code(coder, HAS_FACE):
+        pivot, end, tip = mesh.vertex(next_(gate)), mesh.vertex(prev(gate)), mesh.vertex(gate)
+        pair = self.degree(pivot) * 10 + self.degree(end)
+        bounds = self.bound[pivot] * 2 + self.bound[end]
+        if not self.has_face.code(coder, [bounds * 2 + self.bound[tip], pair * 4 + bounds], [], 0):
+            self.bound[pivot] = self.bound[end] = 1
             return
-        a, b, c = mesh.vertex(next_(gate)), mesh.vertex(prev(gate)), mesh.vertex(gate)
-        if self.syntax.code(coder, IS_NEW):
-            tip = self.new_vertex(0, sub(add(mesh.cell[a], mesh.cell[b]), mesh.cell[c]))
+        turns = prev, next_
+        sides = [self.along(gate, turn) for turn in turns]
+        beside = [NONE if c == NONE else mesh.vertex(turn(turn(c))) for c, turn in zip(sides, turns)]
+        left, right = (self.degree(v) for v in beside)
+        contexts = [
+            pair,
+            pair * 11 + left,
+            pair * 11 + right,
+            (self.degree(pivot) * 11 + left) * 10 + self.degree(tip),
+            left * 11 + right,
+            ((self.last_tip * 11 + left) * 11 + right) * 4 + bounds,
+        ]
+        which = self.degree(pivot)
+        if self.is_new.code(coder, contexts, [], which):
+            tip, self.last_tip = self.new_vertex(), NEW
+        elif beside[0] != NONE and self.is_left.code(coder, contexts, [], which):
+            tip, self.last_tip = beside[0], BESIDE_PIVOT
+        elif beside[1] != NONE and self.is_right.code(coder, contexts, [], which):
+            tip, self.last_tip = beside[1], BESIDE_END
         else:
-            right, left = self.neighbour(next_(gate), next_), self.neighbour(prev(gate), prev)
-            if right != NONE and self.syntax.code(coder, IS_RIGHT):
-                tip = right
-            elif left != NONE and self.syntax.code(coder, IS_LEFT):
-                tip = left
-            else:
-                tip = self.known()
-        self.place([tip, b, a])
+            tip, self.last_tip = self.far_tip(sides), FAR
+        _, at_pivot, at_end = self.place([tip, end, pivot])
+        if self.last_tip != BESIDE_PIVOT and at_end != NONE:
+            self.gates.append(at_end)
+        front = at_end if self.last_tip == BESIDE_PIVOT and at_end != NONE else at_pivot
+        if front != NONE:
+            self.gates.appendleft(front)
 
-    def neighbour(self, c, turn):
+    def far_tip(self, sides):
+        for step in range(8):
+            for side, turn in enumerate((prev, next_)):
+                if sides[side] != NONE:
+                    sides[side] = self.along(sides[side], turn)
+                if sides[side] != NONE and self.far.code(self.coder, 2 * step + side):
+                    return self.mesh.vertex(turn(turn(sides[side])))
+        return self.known()
+
+    def along(self, c, turn):
+        c = turn(c)
         for _ in range(32):
             if self.mesh.across[c] == NONE:
-                return self.mesh.vertex(turn(turn(c)))
+                return c
             c = turn(self.mesh.across[c])
         return NONE
 
     def known(self):
-        v = self.coder.raw(len(self.mesh.cell).bit_length())
-        require(v < len(self.mesh.cell), "the base mesh names a vertex before it exists")
+        v = self.coder.raw(len(self.faces).bit_length())
+        require(v < len(self.faces), "the base mesh names a vertex before it exists")
         return v
 
     def place(self, t):
         first = len(self.mesh.across)
         self.mesh.triangle.append(t)
         self.mesh.across += [NONE] * 3
+        for v in t:
+            self.faces[v] += 1
+        left_open = [NONE] * 3
         for i in range(3):
             x, y = t[(i + 1) % 3], t[(i + 2) % 3]
             require(x != y, "a base triangle names a vertex twice")
             if (y, x) in self.open:
                 self.mesh.link(first + i, self.open.pop((y, x)))
             else:
-                self.gates.append(first + i)
+                left_open[i] = first + i
                 require((x, y) not in self.open, "two base triangles run along the same edge")
                 self.open[x, y] = first + i
+        return left_open
 
-    def new_vertex(self, kind, guess):
-        require(len(self.mesh.cell) < self.num_vertices, "more vertices than announced")
-        cell, size = [], ZERO
-        scale = max(self.size[kind], Single(0.3))
-        mixture = Mixture([ZERO] * 3, [1 / scale] * 3, [ONE, ZERO, ZERO])
-        for axis in range(3):
-            x = self.residuals.code(
-                self.coder, guess[axis], mixture, 0, log2(scale), kind, (axis, 3), 2 * axis
-            )
-            require(0 <= x < self.limit, "a base vertex lies outside the grid")
-            size += abs(x - guess[axis])
-            cell.append(x)
-        self.size[kind] += (size / 3 - self.size[kind]) * 0.2
-        self.mesh.cell.append(cell)
-        return len(self.mesh.cell) - 1
+    def new_vertex(self):
+        require(len(self.faces) < self.num_vertices, "more vertices than announced")
+        self.faces.append(0)
+        self.bound.append(0)
+        return len(self.faces) - 1
+
+
+def place_base(coder, mesh):
+    models, residuals = GuessModels(), Residuals()
+    limit = 1 << mesh.precision
+    jump = edge = Single(limit) / 8
+    misses = []
+    for v in range(len(mesh.corner_of)):
+        around = around_placed(mesh, misses, edge)
+        if around is None:
+            last = mesh.cell[-1] if mesh.cell else [limit // 2] * 3
+            scale = max(jump, Single(0.3))
+            mixture = Mixture([ZERO] * 4, [1 / scale] * 4, [ONE, ZERO, ZERO, ZERO])
+            cell = []
+            for axis in range(3):
+                x = residuals.code(coder, last[axis], mixture, 0, log2(scale), 0, (255, 255), 30)
+                require(0 <= x < limit, "a base vertex lies outside the grid")
+                cell.append(x)
+            a, b, c = (Single(abs(x - y)) for x, y in zip(cell, last))
+            jump += (((a + b) + c) * (ONE / 3) - jump) * 0.2
+            mesh.roughness.append([-16, -16])
+            misses.append((ZERO, ZERO, ZERO))
+        else:
+            cell, roughness = decode_vertex(coder, models, residuals, around, limit)
+            mesh.roughness.append(roughness)
+            misses.append(sub(way(around.origin, cell), around.straight_mean))
+            edge += (around.length * 2 - edge) * 0.1
+        mesh.cell.append(cell)
 
 
 # 7.2 Connectivity
@@ -1024,6 +1071,11 @@ class Neighbourhood:
         else:
             ends = sub(scaled(add(ring[0], ring[-1]), 0.5), mean)
 
+        self.set_frame(normal)
+        self.mean = self.frame(mean)
+        self.features = [self.frame(f) for f in (scaled(fine, share), scaled(coarse, share), ends)]
+
+    def set_frame(self, normal):
         x, y, z = (abs(a) for a in normal)
         self.axes = (1, 2, 0) if x > y and x > z else (0, 2, 1) if y > z else (0, 1, 2)
         across = self.axes[2]
@@ -1032,13 +1084,68 @@ class Neighbourhood:
             inverse = 1 / normal[across]
             for a in self.axes[:2]:
                 self.slope[a] = Single(clamp(normal[a] * inverse, -4.0, 4.0))
-        self.mean = self.frame(mean)
-        self.features = [self.frame(f) for f in (scaled(fine, share), scaled(coarse, share), ends)]
 
     def frame(self, p):
         across = self.axes[2]
         u = [ONE if a == across else self.slope[a] for a in range(3)]
         return tuple(dot(u, p) if a == across else p[a] for a in range(3))
+
+
+class PartOfRing(Neighbourhood):
+    """What is placed of the ring of a base vertex."""
+
+    def __init__(self, mesh, corners, placed, misses, edge):
+        v = len(mesh.cell)
+        self.closed = False
+        self.origin = mesh.cell[placed[0]]
+        self.ring = [way(self.origin, mesh.cell[u]) for u in placed]
+        self.fine, tips = [], []
+        zero = (ZERO, ZERO, ZERO)
+        normal, oldest, first = zero, zero, NONE
+        for c in corners:
+            a, b, across = mesh.vertex(next_(c)), mesh.vertex(prev(c)), mesh.across[c]
+            if across == NONE or max(a, b, mesh.vertex(across)) >= v:
+                continue
+            tips.append(mesh.vertex(across))
+            pa, pb, pt = (way(self.origin, mesh.cell[u]) for u in (a, b, tips[-1]))
+            self.fine.append(sub(add(pa, pb), pt))
+            normal = add(normal, cross(sub(pa, pb), sub(pt, pb)))
+            if first == NONE or max(a, b) < first:
+                first, oldest = max(a, b), self.fine[-1]
+
+        share = ONE / len(placed)
+        mean = missed = zero
+        for u, p in zip(placed, self.ring):
+            mean, missed = add(mean, p), add(missed, misses[u])
+        mean = scaled(mean, share)
+        distance, polygon, before = ZERO, zero, sub(self.ring[-1], mean)
+        for p in self.ring:
+            d = sub(p, mean)
+            distance += root(dot(d, d))
+            polygon, before = add(polygon, cross(before, d)), d
+        self.length = max(distance * share if len(placed) > 1 else edge * 0.5, Single(0.25))
+        features = [scaled(missed, share), zero, zero]
+        if self.fine:
+            ring_mean, mean = mean, zero
+            for p in self.fine:
+                mean = add(mean, p)
+            mean = scaled(mean, ONE / len(self.fine))
+            features[1:] = scaled(sub(ring_mean, mean), 0.5), sub(oldest, mean)
+        self.set_frame(polygon if dot(normal, normal) == 0 else normal)
+        self.straight_mean, self.mean = mean, self.frame(mean)
+        self.features = [self.frame(f) for f in features]
+
+        self.kind = 6 if not self.fine and len(placed) == 1 else min(len(self.fine), 5)
+        self.ring_roughness = mean_roughness(mesh, placed)
+        self.tip_roughness = mean_roughness(mesh, tips) if tips else self.ring_roughness
+
+
+def around_placed(mesh, misses, edge):
+    v = len(mesh.cell)
+    corners, closed = mesh.fan(mesh.corner_of[v])
+    ring = [mesh.vertex(next_(c)) for c in corners] + ([] if closed else [mesh.vertex(prev(corners[-1]))])
+    placed = [u for u in ring if u < v]
+    return PartOfRing(mesh, corners, placed, misses, edge) if placed else None
 
 
 def mean_roughness(mesh, vertices):
@@ -1136,6 +1243,7 @@ class GuessModels:
         self.filters = [[Filter(), Filter()] for _ in range(7)]
         self.scales = [[list(start) for _ in range(3)] for _ in range(3)]
         self.trust = [[[ONE / 3] * 3 for _ in range(16)] for _ in range(3)]
+        self.repeated = [[[[Single(0.2), 5] for _ in range(16)] for _ in range(5)] for _ in range(3)]
 
 
 def sum7(a, b):
@@ -1147,23 +1255,25 @@ def level(x, r, n):
     return index((x + 1.5) * r, n)
 
 
-def learn_experts(mixture, logs, scales, cues, trust, y):
-    """Scale models and trust learn where the number was; returns how far each expert was above it."""
+def learn_scales(mixture, logs, scales, cues, y):
+    """Scale models learn where the number was; returns how far each expert was above it."""
     distances = [c - y for c in mixture.centre]
     for d, log, weights, cue in zip(distances, logs, scales, cues):
         error = Single(clamp(log2(abs(d) + 0.35) - log, -3.0, 3.0))
         step = error * 0.02 / (1 + sum7(cue, cue))
         for j in range(7):
             weights[j] += step * cue[j]
+    return distances
+
+
+def shares_of(mixture, distances):
+    """How well each expert did, beside the others."""
     score = []
     for d, s, w in zip(distances, mixture.sharpness, mixture.weight):
         r = 1 + (d * d + ONE / 12) * (s * s)
         score.append(w * (s / (r * r)))
     f = 1 / total(score)
-    for i in range(len(trust)):
-        better = trust[i] + (score[i] * f - trust[i]) * 0.02
-        trust[i] = better if better > Single(0.02) else Single(0.02)
-    return distances
+    return [one * f for one in score]
 
 
 class VertexGuess:
@@ -1197,18 +1307,32 @@ class VertexGuess:
         self.by_known = log2(abs(self.errors[0]) + abs(self.errors[1]) + 0.35) if kind else ZERO
         self.by_spread, by_width = log2(spread + 0.35), log2(width + 0.35)
         cue = [ONE, self.log_length, self.by_ring, self.by_tips, by_lean, self.by_known]
+        repeated, distance, count = self.repeated(median - self.known)
         self.cues = [cue + [z] for z in (self.by_spread, self.by_spread, by_width)]
         scales = models.scales[kind]
         self.logs = [Single(clamp(sum7(w, c), -4.0, 32.0)) for w, c in zip(scales, self.cues)]
+        self.logs.append(Single(-1.25))
         self.trust = models.trust[kind][level(self.by_spread, 1, 16)]
+        self.again = models.repeated[kind][min(count, 4)][level(log2(distance + 0.35), 1, 16)]
+        centres = [c - self.known for c in (self.affine[axis], median, mode)] + [repeated]
         self.mixture = Mixture(
-            [Single(clamp(c - self.known, -1e9, 1e9)) for c in (self.affine[axis], median, mode)],
+            [Single(clamp(c, -1e9, 1e9)) for c in centres],
             [exp2(-log) * (ONE / 0.85) for log in self.logs],
-            list(self.trust),
+            self.trust + [self.again[0]],
         )
-        peaks = [w * s for _, s, w in zip(*self.mixture)]
-        self.best = peaks.index(max(peaks))
+        peaks = [w * s for w, s in zip(self.trust, self.mixture.sharpness)]
+        self.best = 3 if self.again[0] > Single(0.2) else peaks.index(max(peaks))
         self.log_scale = self.logs[self.best]
+
+    def repeated(self, median):
+        nearest, least, count = ZERO, Single(1e9), 1
+        for p in self.around.ring:
+            distance = abs(p[self.axis] - median)
+            if distance < least:
+                nearest, least, count = p[self.axis], distance, 1
+            elif p[self.axis] == nearest:
+                count += 1
+        return nearest, least, count
 
     def learn(self, x):
         around, axis = self.around, self.axis
@@ -1218,7 +1342,17 @@ class VertexGuess:
             [f[axis] * k for f in around.features], ((y + self.known) - around.mean[axis]) * k
         )
         scales = self.models.scales[self.kind]
-        distances = learn_experts(self.mixture, self.logs, scales, self.cues, self.trust, y)
+        distances = learn_scales(self.mixture, self.logs, scales, self.cues, y)
+        shares = shares_of(self.mixture, distances)
+        hit = shares[3]
+        self.again[1] += 1
+        rate = max(1 / Single(self.again[1]), Single(0.01))
+        weight = self.again[0] + (hit - self.again[0]) * rate
+        self.again[0] = weight if weight > Single(0.02) else Single(0.02)
+        g = 1 / max(1 - hit, Single(1e-6))
+        for i in range(3):
+            trust = self.trust[i] + (shares[i] * g - self.trust[i]) * (Single(0.02) * (1 - hit))
+            self.trust[i] = trust if trust > Single(0.02) else Single(0.02)
         self.position[axis] = y
         self.errors[self.kind] = distances[0]
 
@@ -1231,26 +1365,31 @@ class VertexGuess:
 # 7.4 Coordinates
 
 
+def decode_vertex(coder, models, residuals, around, limit):
+    g = VertexGuess(models, around)
+    cell = [0, 0, 0]
+    for kind in range(3):
+        g.guess(kind)
+        contexts = (
+            level(g.by_tips, 2, 16) * 16 + level(g.by_ring, 1, 16),
+            (around.kind * 8 + level(g.by_known, 1, 8)) * 4 + level(g.by_spread, 0.5, 4),
+        )
+        sign = 2 * around.kind + (g.lean < 0)
+        origin = around.origin[g.axis]
+        x = residuals.code(coder, origin, g.mixture, g.best, g.log_scale, kind, contexts, sign)
+        require(0 <= x < limit, "a vertex lies outside the grid")
+        g.learn(x)
+        cell[g.axis] = x
+    return cell, g.roughness()
+
+
 def decode_coordinates(coder, models, residuals, mesh, patches):
     first = len(mesh.cell)
     for patch in patches:
         around = around_odd(mesh, patch, first)
-        g = VertexGuess(models, around)
-        cell = [0, 0, 0]
-        for kind in range(3):
-            g.guess(kind)
-            contexts = (
-                level(g.by_tips, 2, 16) * 16 + level(g.by_ring, 1, 16),
-                (around.kind * 8 + level(g.by_known, 1, 8)) * 4 + level(g.by_spread, 0.5, 4),
-            )
-            sign = 2 * around.kind + (g.lean < 0)
-            origin = around.origin[g.axis]
-            x = residuals.code(coder, origin, g.mixture, g.best, g.log_scale, kind, contexts, sign)
-            require(0 <= x < 1 << mesh.precision, "a vertex lies outside the grid")
-            g.learn(x)
-            cell[g.axis] = x
+        cell, roughness = decode_vertex(coder, models, residuals, around, 1 << mesh.precision)
         mesh.cell.append(cell)
-        mesh.roughness.append(g.roughness())
+        mesh.roughness.append(roughness)
 
 
 # 7.5 Refinement
@@ -2210,7 +2349,10 @@ class ChannelForecast:
         """Returns the error."""
         u = 1 / (self.features.spread + 1)
         self.filter.learn([f * u for f in self.f], (y - self.features.mean) * u)
-        distances = learn_experts(self.mixture, self.logs, self.scales, [self.cues] * 4, self.trust, y)
+        distances = learn_scales(self.mixture, self.logs, self.scales, [self.cues] * 4, y)
+        for i, share in enumerate(shares_of(self.mixture, distances)):
+            better = self.trust[i] + (share - self.trust[i]) * 0.02
+            self.trust[i] = better if better > Single(0.02) else Single(0.02)
         return -distances[0]
 
 

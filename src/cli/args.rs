@@ -88,7 +88,7 @@ pub struct Encode {
     pub partition: Partition,
     /// What the balanced partition aims at.
     ///
-    /// - size: the smallest whole file; the descriptor has no say
+    /// - size: the smallest whole file; the descriptor has no say, and with --levels auto there are none where that is smaller
     /// - balanced: prefixes nearly as good as they get, for a file a little larger
     /// - prefix: the best prefixes
     #[arg(long, value_name = "AIM", verbatim_doc_comment)]

@@ -9,6 +9,7 @@ use crate::bitstream::streams::StreamReader;
 use crate::passes::base::Grower;
 use crate::passes::connectivity::PausedWalk;
 use crate::passes::patch::{Patches, StarBuilder};
+use crate::passes::placement::Placement;
 use crate::passes::plain::Located;
 use crate::passes::work::{SWEPT_PER_UNIT, Work};
 use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, plain, refine};
@@ -37,6 +38,8 @@ enum Stage {
     Begin,
     /// Triangles of the base mesh.
     Base(Box<Grower<'static>>),
+    /// Its coordinates.
+    Places(Box<Placement<'static>>),
     /// Connectivity of a split.
     Walk(PausedWalk),
     /// Room for what a split brings: the longest arrays are copied part by part.
@@ -118,10 +121,18 @@ impl Running {
                 Stage::Begin => self.begin(mesh, pass, work),
                 Stage::Base(mut grower) => {
                     if grower.code_some(coder, work)? {
-                        *mesh = grower.finish()?.mesh;
+                        work.sweep(faces);
+                        Stage::Places(Box::new(grower.finish()?))
+                    } else {
+                        Stage::Base(grower)
+                    }
+                }
+                Stage::Places(mut placement) => {
+                    if placement.code_some(coder, work)? {
+                        *mesh = placement.finish().mesh;
                         return Ok(Some(Patches::default()));
                     }
-                    Stage::Base(grower)
+                    Stage::Places(placement)
                 }
                 Stage::Walk(mut walk) => {
                     if walk.code_some(coder, &mut decoder.connectivity, mesh, None, work)? {

@@ -1,6 +1,6 @@
 //! Down the levels: M^L → M^0.
 
-use super::options::{EncodeOptions, Progress};
+use super::options::{Attempt, EncodeOptions, Progress};
 use crate::TriMesh;
 use crate::descent::{Descent, Settings};
 use crate::descriptors::{self, Features};
@@ -48,7 +48,7 @@ pub(super) fn analyse(
     cells: &[[i32; 3]],
     companions: Companions,
     options: &EncodeOptions,
-    max_valence: Option<u32>,
+    attempt: Attempt,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Hierarchy {
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
@@ -60,7 +60,7 @@ pub(super) fn analyse(
     let (positions, _) = mesh.into_parts();
     let geometry = Geometry { grid: cells, positions: &positions };
     let Companions { glued, seams, features } = companions;
-    let settings = Settings { max_valence, ..settings(options) };
+    let settings = settings(options, attempt);
     let descent = Descent::new(surface, geometry, mean_edge, settings, glued);
     let mut descent = descent.with_seams(seams).with_features(features);
     let squared_step = steps_per_unit.powi(2);
@@ -94,8 +94,9 @@ pub(super) fn analyse(
     }
 }
 
-fn settings(options: &EncodeOptions) -> Settings {
-    let EncodeOptions { descriptor, window, growth, levels, partition, optimize, .. } = *options;
+fn settings(options: &EncodeOptions, attempt: Attempt) -> Settings {
+    let EncodeOptions { descriptor, window, growth, partition, optimize, .. } = *options;
+    let Attempt { levels, max_valence } = attempt;
     let is_hasty = options.effort < EncodeOptions::LOW_EFFORT;
-    Settings { descriptor, window, growth, levels, partition, optimize, is_hasty, max_valence: None }
+    Settings { descriptor, window, growth, levels, partition, optimize, is_hasty, max_valence }
 }

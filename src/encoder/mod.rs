@@ -113,16 +113,17 @@ pub fn encode_with_attributes(
     let (ordered, source, loose) = (&ordered, &source[..], &loose[..]);
     let loose_corners = &loose_corners[..];
     let exact = Exact { mesh, grid: &grid, ordered, source, loose, loose_corners, values, options };
-    let others = options.other_valences();
-    let attempts = std::iter::once(None).chain(others.iter().copied().map(Some));
+    let attempts = options.hierarchies_tried();
     let mut surface = Some(surface);
     let mut bytes: Vec<u8> = Vec::new();
-    for (i, max_valence) in attempts.enumerate() {
-        let taken = if i == others.len() { surface.take() } else { surface.clone() }.unwrap_or_default();
+    for (i, &attempt) in attempts.iter().enumerate() {
+        let is_last = i + 1 == attempts.len();
+        let taken = if is_last { surface.take() } else { surface.clone() }.unwrap_or_default();
         let (glued, seams, features) = (glued.clone(), quantised.seams(), features.clone());
         let companions = analysis::Companions { glued, seams, features };
-        let hierarchy = analysis::analyse(taken, &cells, companions, options, max_valence, progress);
-        let tried = if options.steps_per_edge.is_some() { &[None] } else { options.steps_tried() };
+        let hierarchy = analysis::analyse(taken, &cells, companions, options, attempt, progress);
+        let is_one_schedule = options.steps_per_edge.is_some() || hierarchy.records.is_empty();
+        let tried = if is_one_schedule { &[None] } else { options.steps_tried() };
         for &steps in tried {
             let steps = options.steps_per_edge.or(steps);
             let schedule = schedule::plan(&hierarchy, options.quantization, steps);

@@ -85,14 +85,23 @@ impl EncodeOptions {
     pub const LOW_EFFORT: u32 = 3;
     /// From this effort on several ways are tried.
     pub const HIGH_EFFORT: u32 = 7;
+    /// From this effort on other partitions are tried as well.
+    const HIGHEST_EFFORT: u32 = 9;
 
-    /// Largest valences of odd vertices that are tried, beside the usual one.
-    pub(super) fn other_valences(&self) -> &'static [u32] {
+    /// Ways down that are tried, the usual one first.
+    pub(super) fn hierarchies_tried(&self) -> Vec<Attempt> {
+        let usual = Attempt { levels: self.levels, max_valence: None };
+        let mut tried = vec![usual];
         let is_for_size = self.optimize == Optimize::Size && self.partition == Partition::Balanced;
-        match self.effort {
-            9.. if is_for_size => &[5, 7],
-            _ => &[],
+        if is_for_size && self.effort >= Self::HIGHEST_EFFORT {
+            tried.extend([5, 7].map(|valence| Attempt { max_valence: Some(valence), ..usual }));
         }
+        // Many surfaces are smallest in one piece; but a base mesh takes its time whatever the profile.
+        let may_be_one = self.levels.is_none() && self.profile == Profile::Small;
+        if is_for_size && may_be_one && self.effort >= Self::LOW_EFFORT {
+            tried.push(Attempt { levels: Some(0), ..usual });
+        }
+        tried
     }
 
     /// Precisions that are tried, as grid steps to the mean edge; `None` follows the errors.
@@ -144,6 +153,15 @@ impl EncodeOptions {
         }
         Ok(())
     }
+}
+
+/// A way down that is tried.
+#[derive(Clone, Copy)]
+pub(super) struct Attempt {
+    /// `None` goes on until the base is small.
+    pub(super) levels: Option<u32>,
+    /// Largest valence of odd vertices, if not the usual one.
+    pub(super) max_valence: Option<u32>,
 }
 
 /// A stream and how it came about.

@@ -19,7 +19,21 @@ pub(crate) struct Neighbourhood {
     pub(crate) coarse: (Lanes, u32),
 }
 
+/// What is known beside the points if the ring is known in part only.
+#[derive(Default)]
+pub(crate) struct PartOfRing {
+    /// Sum of the ring's misses: how far its vertices lie from the means of their outlooks.
+    pub(crate) misses: Lanes,
+    /// The parallelogram over the edge that was known first.
+    pub(crate) oldest: Lanes,
+    /// Sum of the area vectors of the triangles across the ring edges.
+    pub(crate) normal: Lanes,
+    /// Length that an edge usually has.
+    pub(crate) edge: f32,
+}
+
 /// What a neighbourhood says of the vertex inside.
+#[derive(Clone, Copy)]
 pub(crate) struct Outlook {
     /// Mean of the ring.
     pub(crate) mean: Lanes,
@@ -83,6 +97,46 @@ impl Neighbourhood {
             features: [fine * share, coarse * share, ends],
             normal,
             length: (total_distance * share).max(MIN_LENGTH),
+        }
+    }
+
+    /// The same of that part of the ring which is known. Here the mean is that of the parallelograms, if there are any, and
+    /// corrections go along the misses of the ring, half way towards its mean, and towards the oldest parallelogram.
+    pub(crate) fn outlook_of_part(&self, part: &PartOfRing) -> Outlook {
+        let share = 1.0 / self.ring.len() as f32;
+        let mut sum = Lanes::ZERO;
+        for &p in &self.ring {
+            sum += p;
+        }
+        let ring_mean = sum * share;
+        let mut total_distance = 0.0;
+        let mut polygon = Lanes::ZERO;
+        let mut before = self.ring[self.ring.len() - 1] - ring_mean;
+        for &p in &self.ring {
+            let d = p - ring_mean;
+            total_distance += d.dot3(d).sqrt();
+            polygon += before.cross(d);
+            before = d;
+        }
+        let length = if self.ring.len() > 1 { total_distance * share } else { part.edge * 0.5 };
+
+        let mut mean = ring_mean;
+        let mut features = [part.misses * share, Lanes::ZERO, Lanes::ZERO];
+        if !self.parallelograms.is_empty() {
+            let mut sum = Lanes::ZERO;
+            for &p in &self.parallelograms {
+                sum += p;
+            }
+            mean = sum * (1.0 / self.parallelograms.len() as f32);
+            features[1] = (ring_mean - mean) * 0.5;
+            features[2] = part.oldest - mean;
+        }
+        let is_flat = part.normal.dot3(part.normal) == 0.0;
+        Outlook {
+            mean,
+            features,
+            normal: if is_flat { polygon } else { part.normal },
+            length: length.max(MIN_LENGTH),
         }
     }
 }

@@ -1,21 +1,25 @@
-//! The base mesh M⁰ (`format/SPEC.md`, section 7.1): triangles grown over their edges, each new
-//! vertex predicted by the parallelogram over the edge it was reached by.
+//! Triangles of the base mesh M⁰ (`format/SPEC.md`, section 7.1), grown over their edges: around one vertex of the boundary
+//! until it is enclosed, then around the next one. Where the vertices lie follows in [`placement`](super::placement).
 
+use super::placement::Placement;
 use super::work::Work;
 use super::{GridMesh, Malformed};
-use crate::bitstream::mixer::PlainBits;
-use crate::bitstream::mixture::Mixture;
+use crate::bitstream::mixer::{MixedBit, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::residual::{Expectation, NUM_KINDS, ResidualModel};
-use crate::bitstream::tables::log2;
+use crate::bitstream::tables::Tables;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use std::collections::{HashMap, VecDeque};
 
 /// Steps around a vertex in search of the neighbouring boundary edge.
 const MAX_SWING: usize = 32;
-/// Roughness of a vertex whose surroundings are not known.
-const UNKNOWN_ROUGHNESS: i8 = -16;
+/// Vertices along the boundary, on either side of the gate, that are asked for one by one.
+const MAX_STEPS: usize = 8;
+/// Numbers of triangles at a vertex that contexts tell apart.
+const DEGREES: usize = 10;
+/// The same where there may be no vertex.
+const DEGREES_OR_NONE: usize = DEGREES + 1;
+const LIMIT: u32 = 250;
 
 /// What the encoder wants written: a surface and the cell of each vertex.
 pub(crate) struct BaseTarget<'a> {
@@ -46,15 +50,62 @@ pub(crate) fn code<B: BitCoder>(
 ) -> Result<Base, Malformed> {
     let mut grower = Grower::new(num_vertices, num_faces, precision, target);
     grower.code_some(coder, &mut Work::unlimited())?;
-    grower.finish()
+    let mut placement = grower.finish()?;
+    placement.code_some(coder, &mut Work::unlimited())?;
+    Ok(placement.finish())
 }
 
-/// How the place of a vertex is guessed.
-#[derive(Clone, Copy)]
-enum Guess {
-    Parallelogram = 0,
-    FirstOfSeed = 1,
-    RestOfSeed = 2,
+/// Adaptive models of the syntax.
+struct BaseModels {
+    is_new_in_seed: PlainBits,
+    has_face: MixedBit<2>,
+    /// Whether the tip is new; if not, whether it is the neighbour of the pivot, or that of the gate's other end.
+    tip: [MixedBit<6>; 3],
+    far: PlainBits,
+}
+
+impl BaseModels {
+    fn new() -> Self {
+        const D: usize = DEGREES;
+        const E: usize = DEGREES_OR_NONE;
+        let tip = || {
+            let sizes = [D * D, D * D * E, D * D * E, D * E * D, E * E, NUM_TIPS * E * E * 4];
+            MixedBit::new(sizes, D, 0.0, LIMIT)
+        };
+        Self {
+            is_new_in_seed: PlainBits::new(1),
+            has_face: MixedBit::new([8, D * D * 4], 1, 0.0, LIMIT),
+            tip: [tip(), tip(), tip()],
+            far: PlainBits::new(2 * MAX_STEPS),
+        }
+    }
+}
+
+/// What the vertex beyond a gate was.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Tip {
+    New = 0,
+    /// The vertex before the pivot along the boundary: the pivot is enclosed now.
+    BesidePivot = 1,
+    /// The one behind the gate's other end.
+    BesideEnd = 2,
+    Far = 3,
+}
+
+const NUM_TIPS: usize = 4;
+
+/// What is known at a vertex so far.
+#[derive(Clone, Copy, Default)]
+struct Around {
+    faces: u8,
+    /// True if one of its edges lies on the boundary of the mesh.
+    is_at_boundary: bool,
+}
+
+impl Around {
+    fn degree(self) -> usize {
+        usize::from(self.faces).clamp(1, DEGREES) - 1
+    }
 }
 
 /// A base mesh that grows.
@@ -62,33 +113,22 @@ pub(crate) struct Grower<'a> {
     target: Option<&'a BaseTarget<'a>>,
     num_vertices: usize,
     num_faces: usize,
-    limit: i32,
+    precision: u32,
     triangles: Vec<[u32; 3]>,
     opposite: Vec<u32>,
-    positions: Vec<[i32; 3]>,
+    around: Vec<Around>,
     /// Corners that face a directed edge with no triangle beyond it yet.
     open: HashMap<(u32, u32), u32>,
+    /// Of these the ones that are to be looked at, the present one's first. The pivot is the vertex after a gate.
     gates: VecDeque<u32>,
-    syntax: PlainBits,
-    residuals: ResidualModel,
-    /// Running mean of the size of residuals, per kind of guess.
-    mean_size: [f32; NUM_KINDS],
+    models: BaseModels,
+    last_tip: Tip,
     vertex_source: Vec<u32>,
     /// Vertex of each target vertex, where it has one.
     vertex_of_target: Vec<u32>,
     corner_source: Vec<u32>,
     next_target_face: u32,
     target_face_done: Vec<bool>,
-}
-
-/// Contexts of the syntax bits.
-mod context {
-    pub(super) const HAS_FACE: usize = 0;
-    pub(super) const IS_NEW: usize = 1;
-    pub(super) const IS_NEW_IN_SEED: usize = 2;
-    pub(super) const IS_RIGHT: usize = 3;
-    pub(super) const IS_LEFT: usize = 4;
-    pub(super) const COUNT: usize = 5;
 }
 
 impl<'a> Grower<'a> {
@@ -104,15 +144,14 @@ impl<'a> Grower<'a> {
             target,
             num_vertices,
             num_faces,
-            limit: (1_i64 << precision).min(i64::from(i32::MAX)) as i32,
+            precision,
             triangles: Vec::with_capacity(num_faces),
             opposite: Vec::with_capacity(3 * num_faces),
-            positions: Vec::with_capacity(num_vertices),
+            around: Vec::with_capacity(num_vertices),
             open: HashMap::new(),
             gates: VecDeque::new(),
-            syntax: PlainBits::new(context::COUNT),
-            residuals: ResidualModel::new(),
-            mean_size: [(1_u32 << precision) as f32 / 8.0; NUM_KINDS],
+            models: BaseModels::new(),
+            last_tip: Tip::New,
             vertex_source: Vec::new(),
             vertex_of_target: vec![u32::MAX; target_vertices],
             corner_source: Vec::new(),
@@ -141,19 +180,15 @@ impl<'a> Grower<'a> {
     }
 
     /// Links the triangles, once all are there.
-    pub(crate) fn finish(self) -> Result<Base, Malformed> {
-        let num_vertices = self.num_vertices;
-        if self.positions.len() != num_vertices {
+    pub(crate) fn finish(self) -> Result<Placement<'a>, Malformed> {
+        if self.around.len() != self.num_vertices {
             return Err(Malformed("the base mesh has fewer vertices than announced"));
         }
-        let surface = Surface::from_triangles(self.triangles, num_vertices)
+        let Self { target, num_vertices, precision, triangles, vertex_source, corner_source, .. } = self;
+        let surface = Surface::from_triangles(triangles, num_vertices)
             .map_err(|_| Malformed("the base mesh is not a surface"))?;
-        let mesh = GridMesh {
-            surface,
-            positions: self.positions,
-            roughness: vec![[UNKNOWN_ROUGHNESS; 2]; num_vertices],
-        };
-        Ok(Base { mesh, vertex_source: self.vertex_source, corner_source: self.corner_source })
+        let base = Base { mesh: GridMesh { surface, ..GridMesh::default() }, vertex_source, corner_source };
+        Ok(Placement::new(base, precision, target.map(|t| t.positions)))
     }
 
     /// Starts a component: the first target triangle that is not coded yet.
@@ -163,21 +198,18 @@ impl<'a> Grower<'a> {
         }
         let source = 3 * self.next_target_face;
         let mut triangle = [0; 3];
-        for i in 0..3 {
+        for (i, vertex) in triangle.iter_mut().enumerate() {
             let wanted = self.target.map(|t| t.surface.vertex(source + i as u32));
             let known = wanted.map_or(u32::MAX, |w| self.vertex_of_target[w as usize]);
-            if self.syntax.code(coder, context::IS_NEW_IN_SEED, known == u32::MAX) {
-                let (guess, kind) = match (i, self.positions.last()) {
-                    (0, Some(&last)) => (last, Guess::FirstOfSeed),
-                    (0, None) => ([self.limit / 2; 3], Guess::FirstOfSeed),
-                    _ => (self.positions[triangle[0] as usize], Guess::RestOfSeed),
-                };
-                triangle[i] = self.code_vertex(coder, guess, kind, wanted)?;
+            *vertex = if self.models.is_new_in_seed.code(coder, 0, known == u32::MAX) {
+                self.add_vertex(wanted)?
             } else {
-                triangle[i] = self.code_known(coder, known)?;
-            }
+                self.code_known(coder, known)?
+            };
         }
-        self.place(triangle, source)
+        let gates = self.place(triangle, source)?;
+        self.gates.extend(gates.into_iter().flatten());
+        Ok(())
     }
 
     /// Codes what lies beyond the edge that `gate` faces.
@@ -186,51 +218,107 @@ impl<'a> Grower<'a> {
             let source = self.corner_source[(gate / 3) as usize];
             t.surface.across(rotate(source, gate % 3))
         });
-        if !self.syntax.code(coder, context::HAS_FACE, beyond != NO_CORNER) {
+        let (pivot, end, tip) = (self.vertex(next(gate)), self.vertex(prev(gate)), self.vertex(gate));
+        let [at_pivot, at_end, at_tip] = [pivot, end, tip].map(|v| self.around[v as usize]);
+        let pair = at_pivot.degree() * DEGREES + at_end.degree();
+        let bounds = usize::from(at_pivot.is_at_boundary) * 2 + usize::from(at_end.is_at_boundary);
+        let contexts = [bounds * 2 + usize::from(at_tip.is_at_boundary), pair * 4 + bounds];
+        let has_face = &mut self.models.has_face;
+        if !has_face.code(coder, Tables::get(), contexts, &[], 0, beyond != NO_CORNER) {
+            [pivot, end].iter().for_each(|&v| self.around[v as usize].is_at_boundary = true);
             return Ok(());
         }
-        let vertex = |corner: u32| self.triangles[(corner / 3) as usize][(corner % 3) as usize];
-        let (a, b, c) = (vertex(next(gate)), vertex(prev(gate)), vertex(gate));
         let wanted = (beyond != NO_CORNER).then(|| self.target.map(|t| t.surface.vertex(beyond))).flatten();
-        let known = wanted.map_or(u32::MAX, |w| self.vertex_of_target[w as usize]);
 
-        let tip = if self.syntax.code(coder, context::IS_NEW, known == u32::MAX) {
-            let [pa, pb, pc] = [a, b, c].map(|v| self.positions[v as usize]);
-            let guess = std::array::from_fn(|i| pa[i] + (pb[i] - pc[i]));
-            self.code_vertex(coder, guess, Guess::Parallelogram, wanted)?
-        } else {
-            let right = self.boundary_neighbour(next(gate), next);
-            let left = self.boundary_neighbour(prev(gate), prev);
-            if right.is_some() && self.syntax.code(coder, context::IS_RIGHT, right == Some(known)) {
-                right.unwrap_or(known)
-            } else if left.is_some() && self.syntax.code(coder, context::IS_LEFT, left == Some(known)) {
-                left.unwrap_or(known)
-            } else {
-                self.code_known(coder, known)?
-            }
-        };
+        let sides = SIDES.map(|turn| self.along_boundary(gate, turn));
+        let beside = [0, 1].map(|i| self.far_end(sides[i], SIDES[i]));
+        let degree = |v: Option<u32>| v.map_or(DEGREES, |v| self.around[v as usize].degree());
+        let [left, right] = beside.map(degree);
+        let both = left * DEGREES_OR_NONE + right;
+        let contexts = [
+            pair,
+            pair * DEGREES_OR_NONE + left,
+            pair * DEGREES_OR_NONE + right,
+            (at_pivot.degree() * DEGREES_OR_NONE + left) * DEGREES + at_tip.degree(),
+            both,
+            (self.last_tip as usize * DEGREES_OR_NONE * DEGREES_OR_NONE + both) * 4 + bounds,
+        ];
+        let (tip, found) = self.code_tip(coder, contexts, at_pivot.degree(), wanted, sides, beside)?;
+        self.last_tip = found;
         // The triangle beyond starts at its tip, so that it faces the gate with its first corner.
-        self.place([tip, b, a], beyond)
+        let [_, at_pivot, at_end] = self.place([tip, end, pivot], beyond)?;
+        // Around the pivot as long as that goes, then around the vertex that encloses it.
+        self.gates.extend(at_end.filter(|_| found != Tip::BesidePivot));
+        if let Some(gate) = at_end.filter(|_| found == Tip::BesidePivot).or(at_pivot) {
+            self.gates.push_front(gate);
+        }
+        Ok(())
     }
 
-    /// The far end of the boundary edge next to a gate, around one of the gate's ends. `corner`
-    /// faces the edge after the gate; `turn` is the direction around the vertex.
-    fn boundary_neighbour(&self, mut corner: u32, turn: fn(u32) -> u32) -> Option<u32> {
-        for _ in 0..MAX_SWING {
-            let o = self.opposite[corner as usize];
-            if o == NO_CORNER {
-                // Turning by `next` looks around the edge's start, so the end is the far one.
-                let far = turn(turn(corner));
-                return Some(self.triangles[(far / 3) as usize][(far % 3) as usize]);
+    /// Codes the vertex beyond a gate. `sides`: corners that face the boundary edges before and behind it; `beside`: their
+    /// far ends.
+    fn code_tip<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        contexts: [usize; 6],
+        set: usize,
+        wanted: Option<u32>,
+        mut sides: [Option<u32>; 2],
+        beside: [Option<u32>; 2],
+    ) -> Result<(u32, Tip), Malformed> {
+        let tables = Tables::get();
+        let known = wanted.map_or(u32::MAX, |w| self.vertex_of_target[w as usize]);
+        let [is_new, is_left, is_right] = &mut self.models.tip;
+        if is_new.code(coder, tables, contexts, &[], set, known == u32::MAX) {
+            return Ok((self.add_vertex(wanted)?, Tip::New));
+        }
+        for (bit, vertex, tip) in
+            [(is_left, beside[0], Tip::BesidePivot), (is_right, beside[1], Tip::BesideEnd)]
+        {
+            if let Some(vertex) = vertex
+                && bit.code(coder, tables, contexts, &[], set, vertex == known)
+            {
+                return Ok((vertex, tip));
             }
-            corner = turn(o);
+        }
+        for step in 0..MAX_STEPS {
+            for (side, turn) in SIDES.into_iter().enumerate() {
+                sides[side] = sides[side].and_then(|corner| self.along_boundary(corner, turn));
+                if let Some(vertex) = self.far_end(sides[side], turn)
+                    && self.models.far.code(coder, 2 * step + side, vertex == known)
+                {
+                    return Ok((vertex, Tip::Far));
+                }
+            }
+        }
+        Ok((self.code_known(coder, known)?, Tip::Far))
+    }
+
+    fn vertex(&self, corner: u32) -> u32 {
+        self.triangles[(corner / 3) as usize][(corner % 3) as usize]
+    }
+
+    /// The corner that faces the boundary edge next to the one that `corner` faces: around the vertex after it if `turn`
+    /// is [`prev`], around the one before it if `turn` is [`next`].
+    fn along_boundary(&self, corner: u32, turn: fn(u32) -> u32) -> Option<u32> {
+        let mut corner = turn(corner);
+        for _ in 0..MAX_SWING {
+            match self.opposite[corner as usize] {
+                NO_CORNER => return Some(corner),
+                across => corner = turn(across),
+            }
         }
         None
     }
 
+    /// The end of the boundary edge faced by `corner` that lies further along the boundary.
+    fn far_end(&self, corner: Option<u32>, turn: fn(u32) -> u32) -> Option<u32> {
+        corner.map(|corner| self.vertex(turn(turn(corner))))
+    }
+
     /// Codes the name of a vertex that exists already.
     fn code_known<B: BitCoder>(&mut self, coder: &mut B, known: u32) -> Result<u32, Malformed> {
-        let count = self.positions.len() as u32;
+        let count = self.around.len() as u32;
         let bits = 32 - count.leading_zeros();
         let vertex = coder.code_raw(known, bits);
         if vertex >= count {
@@ -239,41 +327,12 @@ impl<'a> Grower<'a> {
         Ok(vertex)
     }
 
-    fn code_vertex<B: BitCoder>(
-        &mut self,
-        coder: &mut B,
-        guess: [i32; 3],
-        kind: Guess,
-        wanted: Option<u32>,
-    ) -> Result<u32, Malformed> {
-        let vertex = self.positions.len();
+    fn add_vertex(&mut self, wanted: Option<u32>) -> Result<u32, Malformed> {
+        let vertex = self.around.len();
         if vertex == self.num_vertices {
             return Err(Malformed("the base mesh has more vertices than announced"));
         }
-        let kind = kind as usize;
-        let wanted_position = wanted.and_then(|w| self.target.map(|t| t.positions[w as usize]));
-        let scale = self.mean_size[kind].max(0.3);
-        let mut position = [0; 3];
-        let mut size = 0.0;
-        for axis in 0..3 {
-            let expected = Expectation {
-                origin: guess[axis],
-                mixture: Mixture::around_zero(scale),
-                best: 0,
-                log_scale: log2(scale),
-                kind,
-                contexts: [axis, 3],
-                sign: 2 * axis,
-            };
-            let value = wanted_position.map_or(0, |p| p[axis]);
-            let value = self.residuals.code(coder, &expected, value);
-            position[axis] = value
-                .filter(|v| (0..self.limit).contains(v))
-                .ok_or(Malformed("a base vertex lies outside the grid"))?;
-            size += (i64::from(position[axis]) - i64::from(guess[axis])).unsigned_abs() as f32;
-        }
-        self.mean_size[kind] += (size / 3.0 - self.mean_size[kind]) * 0.2;
-        self.positions.push(position);
+        self.around.push(Around::default());
         if let Some(w) = wanted {
             self.vertex_of_target[w as usize] = vertex as u32;
             self.vertex_source.push(w);
@@ -281,14 +340,19 @@ impl<'a> Grower<'a> {
         Ok(vertex as u32)
     }
 
-    /// Adds a triangle and links it to the open edges it closes.
-    fn place(&mut self, triangle: [u32; 3], source: u32) -> Result<(), Malformed> {
+    /// Adds a triangle and links it to the open edges it closes. Returns its corners, those of closed edges left out.
+    fn place(&mut self, triangle: [u32; 3], source: u32) -> Result<[Option<u32>; 3], Malformed> {
         let first = 3 * self.triangles.len() as u32;
         self.triangles.push(triangle);
         if self.target.is_some() {
             self.corner_source.push(source);
             self.target_face_done[(source / 3) as usize] = true;
         }
+        for v in triangle {
+            let faces = &mut self.around[v as usize].faces;
+            *faces = faces.saturating_add(1);
+        }
+        let mut open = [None; 3];
         for i in 0..3 {
             let (from, to) = (triangle[(i + 1) % 3], triangle[(i + 2) % 3]);
             if from == to {
@@ -302,16 +366,19 @@ impl<'a> Grower<'a> {
                 }
                 None => {
                     self.opposite.push(NO_CORNER);
-                    self.gates.push_back(corner);
+                    open[i] = Some(corner);
                     if self.open.insert((from, to), corner).is_some() {
                         return Err(Malformed("two base triangles run along the same edge"));
                     }
                 }
             }
         }
-        Ok(())
+        Ok(open)
     }
 }
+
+/// Ways along the boundary: from the pivot, and from the gate's other end.
+const SIDES: [fn(u32) -> u32; 2] = [prev, next];
 
 /// The corner `steps` after `corner` in its triangle.
 fn rotate(corner: u32, steps: u32) -> u32 {

@@ -12,13 +12,51 @@ use crate::bitstream::residual::{Expectation, ResidualModel};
 /// Adaptive models, kept from level to level.
 #[derive(Clone)]
 pub(crate) struct CoordinateModels {
-    guesses: GuessModels,
-    residuals: ResidualModel,
+    pub(super) guesses: GuessModels,
+    pub(super) residuals: ResidualModel,
 }
 
 impl CoordinateModels {
     pub(crate) fn new() -> Self {
         Self { guesses: GuessModels::new(), residuals: ResidualModel::new() }
+    }
+
+    /// Codes the three coordinates of a vertex, each between 0 and `limit`.
+    #[inline(always)]
+    pub(super) fn code_vertex<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        vertex: &mut VertexGuess,
+        surroundings: &Surroundings,
+        limit: i64,
+        wanted: [i32; 3],
+    ) -> Result<[i32; 3], Malformed> {
+        let class = surroundings.class;
+        let mut position = [0; 3];
+        for kind in 0..NUM_KINDS {
+            let guess = vertex.coordinate(&self.guesses, kind);
+            let expected = Expectation {
+                origin: surroundings.origin[guess.axis],
+                mixture: guess.mixture,
+                best: guess.best,
+                log_scale: guess.log_scale,
+                kind,
+                contexts: [
+                    log_level(guess.by_tips, 2.0, 16) * 16 + log_level(guess.by_ring, 1.0, 16),
+                    (class * 8 + log_level(guess.by_known, 1.0, 8)) * 4 + log_level(guess.by_spread, 0.5, 4),
+                ],
+                sign: 2 * class + usize::from(guess.leans_down),
+            };
+            let value = self.residuals.code(coder, &expected, wanted[guess.axis]);
+            if coder.is_guessing() {
+                break;
+            }
+            let value = value.filter(|&v| (0..limit).contains(&i64::from(v)));
+            let value = value.ok_or(Malformed("a vertex lies outside the grid"))?;
+            vertex.settle(&mut self.guesses, &guess, kind, value);
+            position[guess.axis] = value;
+        }
+        Ok(position)
     }
 }
 
@@ -60,30 +98,9 @@ pub(crate) fn code_some<B: BitCoder>(
         surroundings.gather_odd(mesh, patches, patch);
         let mut vertex = VertexGuess::new(&models.guesses, &surroundings);
         let wanted = target.map_or([0; 3], |t| t[patch]);
-        let class = surroundings.class();
-        let mut position = [0; 3];
-        for kind in 0..NUM_KINDS {
-            let guess = vertex.coordinate(&models.guesses, kind);
-            let expected = Expectation {
-                origin: surroundings.origin[guess.axis],
-                mixture: guess.mixture,
-                best: guess.best,
-                log_scale: guess.log_scale,
-                kind,
-                contexts: [
-                    log_level(guess.by_tips, 2.0, 16) * 16 + log_level(guess.by_ring, 1.0, 16),
-                    (class * 8 + log_level(guess.by_known, 1.0, 8)) * 4 + log_level(guess.by_spread, 0.5, 4),
-                ],
-                sign: 2 * class + usize::from(guess.leans_down),
-            };
-            let value = models.residuals.code(coder, &expected, wanted[guess.axis]);
-            if coder.is_guessing() {
-                return Ok(true);
-            }
-            let value = value.filter(|&v| (0..limit).contains(&i64::from(v)));
-            let value = value.ok_or(Malformed("a vertex lies outside the grid"))?;
-            vertex.settle(&mut models.guesses, &guess, kind, value);
-            position[guess.axis] = value;
+        let position = models.code_vertex(coder, &mut vertex, &surroundings, limit, wanted)?;
+        if coder.is_guessing() {
+            return Ok(true);
         }
         mesh.positions.push(position);
         mesh.roughness.push(vertex.roughness());

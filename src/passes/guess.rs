@@ -23,13 +23,24 @@ pub(super) const SHARPNESS_FACTOR: f32 = 1.0 / SCALE_FACTOR;
 const FIRST_SCALES: [f32; NUM_CUES] = [-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3];
 /// Step of the scale models.
 const SCALE_RATE: f32 = 0.02;
-/// Step of the experts' weights, where they start and the least they get. The fourth lane is empty.
+/// Step of the experts' weights, where they start and the least they get. The fourth expert has weights of his own.
 pub(super) const TRUST_RATE: f32 = 0.02;
 const FIRST_TRUST: Lanes = Lanes([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.0]);
 const LEAST_TRUST: Lanes = Lanes([0.02, 0.02, 0.02, 0.0]);
 pub(super) const TRUST_LEVELS: usize = 16;
 /// Steepest slope of the surface over the two axes coded first that is believed.
 const MAX_SLOPE: f32 = 4.0;
+/// The expert who says that a neighbour's coordinate comes again, and the logarithm of his scale.
+const REPEATED: usize = 3;
+const REPEATED_LOG_SCALE: f32 = -1.25;
+/// Weight beyond which residuals are counted from him.
+const REPEATED_LEADS: f32 = 0.2;
+/// His weights: where they start, as after so many coordinates; the least step and the least weight. Neighbours with the
+/// coordinate that are told apart.
+const FIRST_REPEATED: Repeated = Repeated { weight: 0.2, count: 5.0 };
+const REPEATED_RATE: f32 = 0.01;
+const LEAST_REPEATED: f32 = 0.02;
+const REPEATED_COUNTS: usize = 4;
 /// Bound on centres, far outside any grid.
 pub(super) const MAX_CENTRE: f32 = 1e9;
 
@@ -40,6 +51,24 @@ pub(crate) struct GuessModels {
     filters: Vec<[AffineFilter; 2]>,
     scales: [ScaleModel; NUM_KINDS],
     trust: [[Lanes; TRUST_LEVELS]; NUM_KINDS],
+    /// By how many neighbours have the coordinate, and how far it lies from the median.
+    repeated: [[[Repeated; TRUST_LEVELS]; REPEATED_COUNTS]; NUM_KINDS],
+}
+
+/// How often coordinates come again: a mean, and of how many.
+#[derive(Clone, Copy)]
+struct Repeated {
+    weight: f32,
+    count: f32,
+}
+
+impl Repeated {
+    #[inline(always)]
+    fn learn(&mut self, share: f32) {
+        self.count += 1.0;
+        let rate = (1.0 / self.count).max(REPEATED_RATE);
+        self.weight = (self.weight + (share - self.weight) * rate).max(LEAST_REPEATED);
+    }
 }
 
 impl GuessModels {
@@ -48,6 +77,7 @@ impl GuessModels {
             filters: vec![[AffineFilter::new(), AffineFilter::new()]; NUM_CLASSES],
             scales: [ScaleModel::new(FIRST_SCALES); NUM_KINDS],
             trust: [[FIRST_TRUST; TRUST_LEVELS]; NUM_KINDS],
+            repeated: [[[FIRST_REPEATED; TRUST_LEVELS]; REPEATED_COUNTS]; NUM_KINDS],
         }
     }
 }
@@ -134,21 +164,32 @@ pub(crate) struct CoordinateGuess {
     cues: [Lanes; NUM_CUES],
     log_scales: Lanes,
     trust_level: usize,
+    repeated_class: [usize; 2],
 }
 
 impl<'a> VertexGuess<'a> {
     /// Guesses all three coordinates as far as that is possible before one of them is known.
     #[inline(always)]
     pub(crate) fn new(models: &GuessModels, surroundings: &'a Surroundings) -> Self {
+        Self::with_outlook(models, surroundings, surroundings.neighbourhood.outlook())
+    }
+
+    /// The same where the outlook is not that of a whole ring.
+    #[inline(always)]
+    pub(crate) fn with_outlook(
+        models: &GuessModels,
+        surroundings: &'a Surroundings,
+        outlook: Outlook,
+    ) -> Self {
         let around = &surroundings.neighbourhood;
-        let Outlook { mean, features, normal, length } = around.outlook();
+        let Outlook { mean, features, normal, length } = outlook;
         let axes = axis_order(normal);
         let slopes = slopes(normal, axes);
         let frame = Frame::new(slopes, axes[ACROSS]);
         let mean = frame.of(mean);
         let features = features.map(|f| frame.of(f));
 
-        let [along, across] = &models.filters[surroundings.class()];
+        let [along, across] = &models.filters[surroundings.class];
         let (along, across) = (along.weights(), across.weights());
         let mut affine = mean;
         for i in 0..NUM_FEATURES {
@@ -203,6 +244,9 @@ impl<'a> VertexGuess<'a> {
             _ => log2(self.errors[0].abs() + self.errors[1].abs() + FLOOR),
         };
         let (by_spread, by_width) = (self.by_spread.0[axis], self.by_width.0[axis]);
+        let [median, mode] = [self.agreed.median, self.agreed.mode].map(|l| l.0[axis]);
+        let (repeated, distance, count) = self.repeated(axis, median - known);
+        let repeated_class = [count - 1, log_level(log2(distance + FLOOR), 1.0, TRUST_LEVELS)];
         let cues = [
             Lanes::splat(1.0),
             Lanes::splat(self.log_length),
@@ -212,16 +256,20 @@ impl<'a> VertexGuess<'a> {
             Lanes::splat(by_known),
             Lanes([by_spread, by_spread, by_width, 0.0]),
         ];
-        let log_scales = models.scales[kind].predict(&cues);
+        let mut log_scales = models.scales[kind].predict(&cues);
+        log_scales.0[REPEATED] = REPEATED_LOG_SCALE;
         let trust_level = log_level(by_spread, 1.0, TRUST_LEVELS);
-        let [median, mode] = [self.agreed.median, self.agreed.mode].map(|l| l.0[axis]);
-        let centre = Lanes([self.affine.0[axis], median, mode, 0.0]);
-        let mixture = Mixture {
-            centre: (centre - Lanes::splat(known)).clamp(-MAX_CENTRE, MAX_CENTRE),
+        let mut centre = Lanes([self.affine.0[axis], median, mode, 0.0]) - Lanes::splat(known);
+        centre.0[REPEATED] = repeated;
+        let mut mixture = Mixture {
+            centre: centre.clamp(-MAX_CENTRE, MAX_CENTRE),
             sharpness: log_scales.map(|l| exp2(-l)) * SHARPNESS_FACTOR,
             weight: models.trust[kind][trust_level],
         };
-        let best = mixture.best();
+        let [by_count, by_distance] = repeated_class;
+        let weight = models.repeated[kind][by_count][by_distance].weight;
+        let best = if weight > REPEATED_LEADS { REPEATED } else { mixture.best() };
+        mixture.weight.0[REPEATED] = weight;
         CoordinateGuess {
             axis,
             mixture,
@@ -236,7 +284,25 @@ impl<'a> VertexGuess<'a> {
             cues,
             log_scales,
             trust_level,
+            repeated_class,
         }
+    }
+
+    /// The neighbours' coordinate that is closest to `median`, the first one if equal, how far it lies from it, and how
+    /// many have it from there on, 1 to [`REPEATED_COUNTS`]: what is drawn along an axis, or lies in a plane across it, repeats
+    /// coordinates to the bit.
+    #[inline(always)]
+    fn repeated(&self, axis: usize, median: f32) -> (f32, f32, usize) {
+        let (mut repeated, mut least, mut count) = (0.0, MAX_CENTRE, 1);
+        for p in &self.surroundings.neighbourhood.ring {
+            let distance = (p.0[axis] - median).abs();
+            if distance < least {
+                (repeated, least, count) = (p.0[axis], distance, 1);
+            } else if p.0[axis] == repeated {
+                count += 1;
+            }
+        }
+        (repeated, least, count.min(REPEATED_COUNTS))
     }
 
     /// Learns a coordinate.
@@ -250,7 +316,7 @@ impl<'a> VertexGuess<'a> {
     ) {
         let axis = guess.axis;
         let truth = value.wrapping_sub(self.surroundings.origin[axis]) as f32;
-        let filter = &mut models.filters[self.surroundings.class()][usize::from(kind == ACROSS)];
+        let filter = &mut models.filters[self.surroundings.class][usize::from(kind == ACROSS)];
         let per_length = 1.0 / self.length;
         let offset = (truth + guess.known) - self.mean.0[axis];
         filter.learn(self.features.map(|f| f.0[axis] * per_length), offset * per_length);
@@ -261,8 +327,14 @@ impl<'a> VertexGuess<'a> {
 
         let scores = guess.mixture.scores(truth);
         let share = scores * (1.0 / scores.sum());
+        let [by_count, by_distance] = guess.repeated_class;
+        let hit = share.0[REPEATED];
+        models.repeated[kind][by_count][by_distance].learn(hit);
+        // The others learn as much as it was not him.
+        let mut others = share * (1.0 / (1.0 - hit).max(1e-6));
+        others.0[REPEATED] = 0.0;
         let trust = &mut models.trust[kind][guess.trust_level];
-        *trust = (*trust + (share - *trust) * TRUST_RATE).max(LEAST_TRUST);
+        *trust = (*trust + (others - *trust) * (TRUST_RATE * (1.0 - hit))).max(LEAST_TRUST);
         self.position.0[axis] = truth;
         self.errors[kind] = distance.0[0];
     }

@@ -17,6 +17,7 @@ pub(crate) mod loose;
 pub(crate) mod numbers;
 pub(crate) mod order;
 pub(crate) mod patch;
+pub(crate) mod placement;
 pub(crate) mod plain;
 mod polygon;
 pub(crate) mod refine;

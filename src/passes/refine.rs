@@ -61,7 +61,7 @@ pub(crate) fn code_some<B: BitCoder>(
         }
         surroundings.gather_refined(mesh, v);
         let mut vertex = VertexGuess::new(&models.guesses, &surroundings);
-        let class = surroundings.class();
+        let class = surroundings.class;
         for kind in 0..NUM_KINDS {
             let guess = vertex.coordinate(&models.guesses, kind);
             let low = mesh.positions[v][guess.axis];

@@ -3,7 +3,7 @@
 use super::GridMesh;
 use super::patch::Patches;
 use crate::lanes::Lanes;
-use crate::lifting::neighbourhood::Neighbourhood;
+use crate::lifting::neighbourhood::{Neighbourhood, Outlook, PartOfRing};
 use crate::mesh::surface::{NO_CORNER, next, prev};
 
 /// Classes of vertices that have filters each: by valence from 3 to 8 and more, and open rings.
@@ -18,7 +18,9 @@ pub(crate) struct Surroundings {
     pub(crate) neighbourhood: Neighbourhood,
     /// Cell of the first neighbour; points are relative to it.
     pub(crate) origin: [i32; 3],
-    corners: Vec<u32>,
+    /// Which of the [`NUM_CLASSES`] classes the vertex is in.
+    pub(crate) class: usize,
+    pub(super) corners: Vec<u32>,
     /// Base-2 logarithms of residual over edge length: mean of the ring along and across the
     /// surface; mean of the outer vertices of this level (when refining, of the vertex itself), too.
     pub(crate) roughness: Lanes,
@@ -34,11 +36,15 @@ enum Tip {
     Coarse(u32),
 }
 
-impl Surroundings {
-    pub(crate) fn class(&self) -> usize {
-        if self.neighbourhood.is_closed { self.neighbourhood.ring.len().clamp(3, 8) - 3 } else { OPEN_CLASS }
-    }
+/// What is known of a base mesh whose first vertices are placed.
+pub(crate) struct Fringe {
+    /// Of each of them how far its place lies from the mean of its outlook.
+    pub(crate) misses: Vec<Lanes>,
+    /// Mean length of edges.
+    pub(crate) edge: f32,
+}
 
+impl Surroundings {
     /// Looks around the vertex that `patch` brought back, the next one without a position.
     pub(crate) fn gather_odd(&mut self, mesh: &GridMesh, patches: &Patches, patch: usize) {
         let vertex = mesh.positions.len();
@@ -71,6 +77,55 @@ impl Surroundings {
         );
         let tips = tips.mean().unwrap_or(ring);
         self.roughness = Lanes([ring[0], ring[1], tips[0], tips[1]]);
+    }
+
+    /// Looks around the first vertex of a base mesh that has no position, at those before it. `None` if it has no
+    /// neighbour among them.
+    pub(crate) fn gather_placed(&mut self, mesh: &GridMesh, fringe: &Fringe) -> Option<Outlook> {
+        let (surface, vertex) = (&mesh.surface, mesh.positions.len());
+        let is_placed = |v: u32| (v as usize) < vertex;
+        let is_whole = surface.fan(surface.corner_of[vertex], &mut self.corners);
+        let around = &mut self.neighbourhood;
+        around.clear();
+        around.is_closed = false;
+        let mut part = PartOfRing { edge: fringe.edge, ..PartOfRing::default() };
+        let (mut ring, mut tips) = (RoughnessMean::default(), RoughnessMean::default());
+        let last = self.corners.last().filter(|_| !is_whole).map(|&c| surface.vertex(prev(c)));
+        let all = self.corners.iter().map(|&c| surface.vertex(next(c))).chain(last);
+        let mut placed = all.filter(|&v| is_placed(v)).peekable();
+        self.origin = mesh.positions[*placed.peek()? as usize];
+        let point = |v: u32| Lanes::between(self.origin, mesh.positions[v as usize]);
+        for v in placed {
+            around.ring.push(point(v));
+            part.misses += fringe.misses[v as usize];
+            ring.add(mesh, v);
+        }
+        let mut oldest = u32::MAX;
+        for &corner in &self.corners {
+            let (a, b, across) =
+                (surface.vertex(next(corner)), surface.vertex(prev(corner)), surface.across(corner));
+            if across == NO_CORNER || !is_placed(a.max(b).max(surface.vertex(across))) {
+                continue;
+            }
+            let tip = surface.vertex(across);
+            let [pa, pb, pt] = [a, b, tip].map(point);
+            let parallelogram = (pa + pb) - pt;
+            around.parallelograms.push(parallelogram);
+            part.normal += (pa - pb).cross(pt - pb);
+            tips.add(mesh, tip);
+            if a.max(b) < oldest {
+                oldest = a.max(b);
+                part.oldest = parallelogram;
+            }
+        }
+        self.class = match (around.parallelograms.len(), around.ring.len()) {
+            (0, 1) => NUM_CLASSES - 1,
+            (count, _) => count.min(NUM_CLASSES - 2),
+        };
+        let ring = ring.mean().unwrap_or_default();
+        let tips = tips.mean().unwrap_or(ring);
+        self.roughness = Lanes([ring[0], ring[1], tips[0], tips[1]]);
+        Some(around.outlook_of_part(&part))
     }
 
     /// Looks around `vertex` while vertices before it are refined already and the others are not:
@@ -138,25 +193,26 @@ impl Surroundings {
                 Tip::Coarse(tip) => around.coarse = (around.coarse.0 + over(tip), around.coarse.1 + 1),
             }
         }
+        self.class = if closed { around.ring.len().clamp(3, 8) - 3 } else { OPEN_CLASS };
         roughness.mean().unwrap_or_default()
     }
 }
 
 #[derive(Default)]
-struct RoughnessMean {
+pub(super) struct RoughnessMean {
     sum: [i32; 2],
     count: i32,
 }
 
 impl RoughnessMean {
-    fn add(&mut self, mesh: &GridMesh, vertex: u32) {
+    pub(super) fn add(&mut self, mesh: &GridMesh, vertex: u32) {
         let [along, across] = mesh.roughness[vertex as usize];
         self.sum[0] += i32::from(along);
         self.sum[1] += i32::from(across);
         self.count += 1;
     }
 
-    fn mean(&self) -> Option<[f32; 2]> {
+    pub(super) fn mean(&self) -> Option<[f32; 2]> {
         (self.count > 0).then(|| self.sum.map(|s| s as f32 / (8 * self.count) as f32))
     }
 }
