@@ -1520,6 +1520,7 @@ class Whole:
         joined = [[place[v] for v in t] for t in mesh.triangle]
         self.triangle = [t for t in joined if len(set(t)) == 3]
         self.position = self.order = None
+        self.told = []
         # Vertices and faces of the surface that these are.
         self.vertex_source = [v for v in range(len(place)) if v >= len(root) or root[v] == v]
         self.face_source = [f for f, t in enumerate(joined) if len(set(t)) == 3]
@@ -1590,28 +1591,72 @@ class Whole:
             corners.append(3 * f + (lowest + turned) % 3)
         self.order = vertices.order, place, corners
 
-    def rows(self, values):
-        """Of each element of the assembled mesh the row of an attribute, or NONE."""
-        vertices = self.order[0] if self.order else range(len(self.cell))
-        corners = self.order[2] if self.order else range(0, 3 * len(self.triangle), 3)
+    def sources(self, domain):
+        """Of each joined element the element of the surface and, of a corner, its joined vertex."""
+        if domain == OF_VERTICES:
+            return [(v, 0) for v in self.vertex_source]
+        if domain == OF_FACES:
+            return [(f, 0) for f in self.face_source]
+        return [(3 * f + k, v) for f, t in zip(self.face_source, self.triangle) for k, v in enumerate(t)]
 
-        def corner(c):
-            return 3 * self.face_source[c // 3] + c % 3 if c // 3 < len(self.face_source) else NONE
+    def count(self, domain):
+        """Joined and loose elements."""
+        return (len(self.cell), 3 * len(self.triangle), len(self.triangle))[domain]
 
-        if values.declared.domain == OF_VERTICES:
-            places = [self.vertex_source[v] if v < len(self.vertex_source) else NONE for v in vertices]
-        elif values.declared.domain == OF_CORNERS:
-            places = [corner(c // 3 * 3 + (c + k) % 3) for c in corners for k in range(3)]
-        else:
-            places = [NONE if corner(c) == NONE else corner(c) // 3 for c in corners]
-        return [NONE if place == NONE else values.row[place] for place in places]
+    def values(self, payload, attributes):
+        """Section 7.12: the bytes of each element's value, or NONE, where they are told."""
+        reader = Reader(payload)
+        scales = []
+        for one in attributes:
+            inexact = one.declared.coding != TABLE
+            exact = reader.u8() if inexact else 0
+            require(exact <= 1, "the kinds of exact values")
+            scales.append(reader.take(one.declared.components) if exact else None)
+        coder = RangeDecoder(payload[reader.at :])
+        self.told = []
+        for one, codes in zip(attributes, scales):
+            told, sources = {}, self.sources(one.declared.domain)
+            exact = codes is not None and ExactRows(one.declared, codes)
+            if exact:
+                for i, (element, w) in enumerate(sources):
+                    row = one.row[element]
+                    told[i] = exact.decode(coder, NONE if row == NONE else one.rows[row], (row, w))
+            missing, ways, last = Plain(), Numbers(), [max(one.declared.low, 0)] * one.declared.channels
+            for i in range(len(sources), self.count(one.declared.domain)):
+                channels = NONE
+                if not (one.declared.has_missing and missing.code(coder, 0)):
+                    channels = last = [c + ways.signed(coder, k) for k, c in enumerate(last)]
+                    require(all(one.declared.low <= c <= one.declared.high for c in channels), "a loose value")
+                if exact:
+                    told[i] = exact.decode(coder, channels, None)
+                else:
+                    told[i] = NONE if channels == NONE else one.declared.packed(channels)
+                coder.check_end()
+            self.told.append(told)
+        coder.check_end()
 
     def checksum_of_values(self, attributes):
         """Section 9.2."""
         crc = 0
-        for values in attributes:
-            for row in self.rows(values):
-                crc = zlib.crc32(b"\0" if row == NONE else b"\1" + values.declared.packed(values.rows[row]), crc)
+        for k, values in enumerate(attributes):
+            domain = values.declared.domain
+            told = {}
+            for i, (element, _) in enumerate(self.sources(domain)):
+                row = values.row[element]
+                told[i] = NONE if row == NONE else values.declared.packed(values.rows[row])
+            if self.told:
+                told.update(self.told[k])
+            if not self.order:
+                order = range(self.count(domain))
+            elif domain == OF_VERTICES:
+                order = self.order[0]
+            elif domain == OF_FACES:
+                order = [c // 3 for c in self.order[2]]
+            else:
+                order = [c // 3 * 3 + (c + i) % 3 for c in self.order[2] for i in range(3)]
+            for element in order:
+                value = told.get(element, NONE)
+                crc = zlib.crc32(b"\0" if value == NONE else b"\1" + value, crc)
         return crc
 
     def checksum(self):
@@ -1667,18 +1712,33 @@ class ExactAxis:
                 return by_width
         return float(high - middle) / (float(high - low) + 1)
 
+    def off_value(self, coder):
+        if self.off.code(coder, 1):
+            return -0.0
+        bits = coder.raw(32) << 32 | coder.raw(32) if self.wide else coder.raw(32)
+        return struct.unpack(*(("<d", struct.pack("<Q", bits)) if self.wide else ("<f", struct.pack("<I", bits))))[0]
+
+    def nearest(self, coder, expected, ways):
+        """The number that is so many keys from the one nearest to what is expected."""
+        if self.off.code(coder, 0):
+            return self.off_value(coder)
+        if self.steps:
+            near = int(clamp(math.floor(expected * self.steps + 0.5), -(2.0**53), 2.0**53)) + (1 << 63)
+        else:
+            near = self.key(expected)
+        key = near + ways.signed(coder, 0)
+        require(0 <= key < 1 << (64 if self.steps else self.width), "a value that is no number")
+        return self.number(key)
+
     def decode(self, coder, cell, low, high):
-        if cell in self.last:
+        if cell != NONE and cell in self.last:
             hit = self.repeated.code(coder, self.history)
             self.history = (2 * self.history + hit) % 8
             if hit:
                 return self.number(self.last[cell])
         low, high = self.range(low, high)
         if self.off.code(coder, 0):
-            x = -0.0
-            if not self.off.code(coder, 1):
-                bits = coder.raw(32) << 32 | coder.raw(32) if self.wide else coder.raw(32)
-                x = struct.unpack(*(("<d", struct.pack("<Q", bits)) if self.wide else ("<f", struct.pack("<I", bits))))[0]
+            x = self.off_value(coder)
         else:
             size, node = high - low, 1
             while low < high:
@@ -1689,10 +1749,82 @@ class ExactAxis:
                     bit = coder.bit(clamp(int(self.share(low, middle, high) * 65536), 16, 65520))
                 low, high = (middle + 1, high) if bit else (low, middle)
                 node = 2 * node + bit
-            self.last[cell] = low
+            if cell != NONE:
+                self.last[cell] = low
             x = self.number(low)
         require(math.isfinite(x), "a coordinate that is no number")
         return x
+
+
+class ExactRows:
+    """7.12: the values of one attribute."""
+
+    def __init__(self, declared, codes):
+        self.declared = declared
+        self.axes = [ExactAxis(TYPES[declared.type] != "f", code) for code in codes]
+        self.given, self.repeated, self.restored, self.ways = Plain(), Plain(), Plain(), Numbers()
+        self.history = self.past = 0
+        self.rows, self.at, self.anywhere = [], {}, {}
+
+    def decode(self, coder, channels, key):
+        """The bytes of a value, or NONE; where the row is known again it is by its number."""
+        coder.check_end()
+        declared = self.declared
+        letter = TYPES[declared.type]
+        if channels == NONE:
+            if not self.given.code(coder, 0):
+                return NONE
+            size = struct.calcsize("<" + letter)
+            bits = [coder.raw(32) << 32 | coder.raw(32) if size == 8 else coder.raw(8 * size) for _ in range(declared.components)]
+            # Bits are kept as they came: those of NaN, too.
+            return b"".join(number.to_bytes(size, "little") for number in bits)
+        candidates = []
+        if key:
+            candidates = [(n, one[k]) for n, one, k in ((0, self.at, key), (1, self.anywhere, key[0])) if k in one]
+            if len(candidates) == 2 and candidates[0][1] == candidates[1][1]:
+                candidates.pop()
+        for n, last in candidates:
+            hit = self.repeated.code(coder, 8 * n + self.history)
+            self.history = (2 * self.history + hit) % 8
+            if hit:
+                return self.note(key, last)
+        restored = self.restored.code(coder, self.past)
+        self.past = (2 * self.past + restored) % 4
+        if restored:
+            return self.add(key, declared.packed(channels))
+        value = self.components(coder, channels)
+        if letter not in "fd":
+            value = [int(x) for x in value]
+        return self.add(key, struct.pack("<%d%s" % (declared.components, letter), *value))
+
+    def add(self, key, value):
+        self.rows.append(value)
+        return self.note(key, len(self.rows) - 1)
+
+    def note(self, key, row):
+        if key:
+            self.at[key] = self.anywhere[key[0]] = row
+        return self.rows[row]
+
+    def components(self, coder, channels):
+        declared = self.declared
+        if declared.coding == UNIFORM:
+            half = abs(declared.step * 0.5)
+            middles = [low + q * declared.step for low, q in zip(declared.minimum, channels)]
+            return [axis.decode(coder, q, m - half, m + half) for axis, q, m in zip(self.axes, channels, middles)]
+        bits = 8 << declared.type // 2
+        one = 1.0 if declared.type >= 6 else float((1 << bits - (declared.type % 2 == 0)) - 1)
+        middles = [x * one for x in declared.direction(*channels)]
+        half = one / declared.high
+        last = max(range(3), key=lambda k: abs(middles[k]))
+        value = [0.0] * 3
+        for k in (k for k in range(3) if k != last):
+            value[k] = self.axes[k].decode(coder, NONE, middles[k] - half, middles[k] + half)
+        a, b = (value[k] for k in range(3) if k != last)
+        expected = math.sqrt(max((one * one - a * a) - b * b, 0.0))
+        value[last] = self.axes[last].nearest(coder, -expected if middles[last] < 0 else expected, self.ways)
+        require(math.isfinite(value[last]), "a value that is no number")
+        return value
 
 
 class OrderPicker:
@@ -2526,6 +2658,10 @@ def decode(stream):
                 glue.decode(payload, mesh)
             elif kind == "m":
                 read_materials(payload)
+            elif kind == "v":
+                whole = whole or Whole(grid, mesh, glue.root)
+                require(declared, "values of no attributes")
+                whole.values(payload, values)
             elif kind in "ixo":
                 whole = whole or Whole(grid, mesh, glue.root)
                 {"i": whole.loose, "x": whole.exact, "o": whole.ordered}[kind](payload)

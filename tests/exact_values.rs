@@ -4,10 +4,10 @@
 
 mod common;
 
-use common::attributed::{all, atlas, colours, flat_normals, materials};
+use common::attributed::{all, atlas, colours, flat_normals, materials, nasty, smooth_normals};
 use common::kinds::every_kind;
-use common::{Random, build, sphere};
-use lwc::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
+use common::{build, sphere};
+use lwc::mesh::{Attribute, Attributes, Domain, ScalarType, Semantic, Values};
 use lwc::{Decoder, EncodeOptions, Limits, Profile, TriMesh, encode_with_attributes};
 
 fn everything() -> EncodeOptions {
@@ -28,39 +28,6 @@ fn decode(bytes: &[u8]) -> (TriMesh, Attributes) {
     decoder.push(bytes).unwrap();
     assert!(decoder.is_complete());
     decoder.to_tri_mesh_with_attributes().unwrap()
-}
-
-/// Numbers of all types for the elements of a mesh: small, large, far apart, and those that are no numbers.
-fn nasty(mesh: &TriMesh, domain: Domain, scalar: ScalarType, semantic: Semantic, seed: u64) -> Attribute {
-    let mut random = Random(seed);
-    let num_components = if semantic == Semantic::Normal { 3 } else { 1 + seed as usize % 4 };
-    let mut values = Values::new(scalar);
-    let count = domain.num_elements(mesh);
-    let has_no_numbers = seed.is_multiple_of(2);
-    for k in 0..count * num_components {
-        let bits = match (scalar, random.next() % 8) {
-            (ScalarType::F32, 0) => u64::from((-0.0_f32).to_bits()),
-            (ScalarType::F32, 1) => u64::from(f32::from_bits(random.next() as u32 & 0x007f_ffff).to_bits()),
-            (ScalarType::F32, 2) if has_no_numbers => 0x7fc0_0001 + random.next() % 9,
-            (ScalarType::F32, 3) if has_no_numbers => u64::from(f32::NEG_INFINITY.to_bits()),
-            (ScalarType::F32, 4) => u64::from((0.001 * (k % 1000) as f32).to_bits()),
-            (ScalarType::F32, _) => u64::from((random.unit() as f32).to_bits()),
-            (ScalarType::F64, 0) => (-0.0_f64).to_bits(),
-            (ScalarType::F64, 1) => random.next() & 0x000f_ffff_ffff_ffff,
-            (ScalarType::F64, 2) if has_no_numbers => f64::NAN.to_bits() | (random.next() % 99),
-            (ScalarType::F64, 3) if has_no_numbers => f64::MAX.to_bits(),
-            (ScalarType::F64, _) => (random.unit() * 1e6).to_bits(),
-            (ScalarType::U32 | ScalarType::I32, _) => random.next() >> 32 >> (seed % 2 * 20),
-            (scalar, _) => random.next() & (u64::MAX >> (64 - 8 * scalar.num_bytes())),
-        };
-        values.push_bits(bits);
-    }
-    let indices = seed.is_multiple_of(3).then(|| {
-        let index = |k: u32| if random.next().is_multiple_of(5) { NO_ROW } else { k };
-        (0..count as u32).map(index).collect()
-    });
-    let name = format!("{scalar:?} of {domain}");
-    Attribute { indices, ..Attribute::new(name, semantic, domain, num_components, values) }
 }
 
 /// Names and bits of all values, element by element.
@@ -138,15 +105,8 @@ fn usual_attributes_return_bit_for_bit() {
     let (mesh, uv) = atlas(30, 20);
     assert_lossless(&mesh, &all(vec![uv, colours(&mesh), flat_normals(&mesh), materials(&mesh)]), "atlas");
     let mesh = sphere(3);
-    let normals: Vec<f32> = mesh.positions().iter().flatten().map(|&x| x as f32).collect();
-    let doubles: Vec<f64> = mesh
-        .positions()
-        .iter()
-        .flat_map(|p| p.map(|x| x / p.iter().map(|x| x * x).sum::<f64>().sqrt()))
-        .collect();
-    let make = |values| Attribute::new("n", Semantic::Normal, Domain::Vertex, 3, values);
-    for values in [Values::F32(normals), Values::F64(doubles)] {
-        assert_lossless(&mesh, &all(vec![make(values)]), "normals");
+    for normals in smooth_normals(&mesh) {
+        assert_lossless(&mesh, &all(vec![normals]), "normals");
     }
 }
 

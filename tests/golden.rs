@@ -228,7 +228,7 @@ fn the_golden_streams_cover_the_syntax() {
             ("refinement last", kinds.last() == Some(&PassKind::Refine)),
             ("padding", rows.iter().enumerate().any(|(i, row)| is_padded(i, row))),
             ("attributes", chunks.iter().any(|c| c.kind == b'd') && chunks.iter().any(|c| c.kind == b'a')),
-            ("unknown chunk", chunks.iter().any(|c| !b"HpdLBSRatgixo".contains(&c.kind))),
+            ("unknown chunk", chunks.iter().any(|c| !b"HpdnmLBSRatgixvo".contains(&c.kind))),
             ("glue in the base mesh", chunks.iter().filter(|c| c.kind == b'g').count() == 1),
             ("glue in splits", chunks.iter().filter(|c| c.kind == b'g').count() > 1),
             ("loose", chunks.iter().any(|c| c.kind == b'i')),
@@ -236,6 +236,7 @@ fn the_golden_streams_cover_the_syntax() {
             ("exact doubles", exact(&[1, 0])),
             ("exact decimals", chunks.iter().any(|c| c.kind == b'x' && (1..32).contains(&c.payload[1]))),
             ("exact binary fractions", chunks.iter().any(|c| c.kind == b'x' && c.payload[1] >= 32)),
+            ("exact values", chunks.iter().any(|c| c.kind == b'v' && c.payload.starts_with(&[1]))),
             ("order", chunks.iter().any(|c| c.kind == b'o')),
             ("scene", chunks.iter().any(|c| c.kind == b'n')),
             ("materials in front", is_in_front(&chunks, b'm')),
@@ -256,7 +257,8 @@ mod make {
     use super::common::*;
     use lwc::descriptors::Descriptor;
     use lwc::mesh::{
-        Attribute, Domain, GltfMaterials, IDENTITY, Instance, NO_ROW, SceneTable, Semantic, Values,
+        Attribute, Domain, GltfMaterials, IDENTITY, Instance, NO_ROW, ScalarType, SceneTable, Semantic,
+        Values,
     };
     use lwc::{EncodeOptions, Partition, TriMesh, encode, encode_with_attributes};
     use std::path::Path;
@@ -446,6 +448,19 @@ mod make {
                 let mut options = EncodeOptions::default();
                 everything(&mut options);
                 let list = attributed::torn(&mesh);
+                encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
+            }),
+            ("exact-values", {
+                let mesh = beside(strip(9), single_and_loose());
+                let mut options = EncodeOptions::default();
+                everything(&mut options);
+                let nasty =
+                    |domain, scalar, semantic, seed| attributed::nasty(&mesh, domain, scalar, semantic, seed);
+                let mut list = attributed::smooth_normals(&mesh).to_vec();
+                list.push(nasty(Domain::Vertex, ScalarType::U32, Semantic::Generic, 4));
+                list.push(nasty(Domain::Corner, ScalarType::F32, Semantic::TexCoord(0), 6));
+                list.push(nasty(Domain::Face, ScalarType::F64, Semantic::Generic, 2));
+                list.push(attributed::materials(&mesh));
                 encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
             }),
             ("scene", scene()),
