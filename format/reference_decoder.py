@@ -666,15 +666,51 @@ class Base:
         return len(self.faces) - 1
 
 
+class PlacingOrder:
+    def __init__(self, mesh):
+        self.mesh, self.first = mesh, 0
+        self.placed = [False] * len(mesh.corner_of)
+        self.count = [0] * len(mesh.corner_of)
+        self.waiting = [collections.deque() for _ in range(3)]
+
+    def next(self):
+        for k in (3, 2, 1):
+            while self.waiting[k - 1]:
+                v = self.waiting[k - 1].popleft()
+                if not self.placed[v] and self.count[v] == k:
+                    return v
+        while self.placed[self.first]:
+            self.first += 1
+        return self.first
+
+    def place(self, v):
+        mesh, placed = self.mesh, self.placed
+        placed[v] = True
+        for corner in mesh.fan(mesh.corner_of[v])[0]:
+            for c in (corner, next_(corner)):
+                edge = mesh.vertex(next_(c)), mesh.vertex(prev(c))
+                if mesh.across[c] == NONE or not (placed[edge[0]] and placed[edge[1]]):
+                    continue
+                tips = mesh.vertex(c), mesh.vertex(mesh.across[c])
+                if placed[tips[0]] != placed[tips[1]]:
+                    u = tips[0] if placed[tips[1]] else tips[1]
+                    if self.count[u] < 3:
+                        self.waiting[self.count[u]].append(u)
+                        self.count[u] += 1
+
+
 def place_base(coder, mesh):
     models, residuals = GuessModels(), Residuals()
-    limit = 1 << mesh.precision
+    num_vertices, limit = len(mesh.corner_of), 1 << mesh.precision
     jump = edge = Single(limit) / 8
-    misses = []
-    for v in range(len(mesh.corner_of)):
-        around = around_placed(mesh, misses, edge)
+    last = [limit // 2] * 3
+    mesh.cell, mesh.roughness = [None] * num_vertices, [[-16, -16]] * num_vertices
+    misses = [(ZERO, ZERO, ZERO)] * num_vertices
+    order = PlacingOrder(mesh)
+    for _ in range(num_vertices):
+        v = order.next()
+        around = around_placed(mesh, v, order.placed, misses, edge)
         if around is None:
-            last = mesh.cell[-1] if mesh.cell else [limit // 2] * 3
             scale = max(jump, Single(0.3))
             mixture = Mixture([ZERO] * 4, [1 / scale] * 4, [ONE, ZERO, ZERO, ZERO])
             cell = []
@@ -684,14 +720,12 @@ def place_base(coder, mesh):
                 cell.append(x)
             a, b, c = (Single(abs(x - y)) for x, y in zip(cell, last))
             jump += (((a + b) + c) * (ONE / 3) - jump) * 0.2
-            mesh.roughness.append([-16, -16])
-            misses.append((ZERO, ZERO, ZERO))
         else:
-            cell, roughness = decode_vertex(coder, models, residuals, around, limit)
-            mesh.roughness.append(roughness)
-            misses.append(sub(way(around.origin, cell), around.straight_mean))
+            cell, mesh.roughness[v] = decode_vertex(coder, models, residuals, around, limit)
+            misses[v] = sub(way(around.origin, cell), around.straight_mean)
             edge += (around.length * 2 - edge) * 0.1
-        mesh.cell.append(cell)
+        mesh.cell[v] = last = cell
+        order.place(v)
 
 
 # 7.2 Connectivity
@@ -1094,17 +1128,16 @@ class Neighbourhood:
 class PartOfRing(Neighbourhood):
     """What is placed of the ring of a base vertex."""
 
-    def __init__(self, mesh, corners, placed, misses, edge):
-        v = len(mesh.cell)
+    def __init__(self, mesh, corners, ring, is_placed, misses, edge):
         self.closed = False
-        self.origin = mesh.cell[placed[0]]
-        self.ring = [way(self.origin, mesh.cell[u]) for u in placed]
+        self.origin = mesh.cell[ring[0]]
+        self.ring = [way(self.origin, mesh.cell[u]) for u in ring]
         self.fine, tips = [], []
         zero = (ZERO, ZERO, ZERO)
         normal, oldest, first = zero, zero, NONE
         for c in corners:
             a, b, across = mesh.vertex(next_(c)), mesh.vertex(prev(c)), mesh.across[c]
-            if across == NONE or max(a, b, mesh.vertex(across)) >= v:
+            if across == NONE or not all(is_placed[u] for u in (a, b, mesh.vertex(across))):
                 continue
             tips.append(mesh.vertex(across))
             pa, pb, pt = (way(self.origin, mesh.cell[u]) for u in (a, b, tips[-1]))
@@ -1113,9 +1146,9 @@ class PartOfRing(Neighbourhood):
             if first == NONE or max(a, b) < first:
                 first, oldest = max(a, b), self.fine[-1]
 
-        share = ONE / len(placed)
+        share = ONE / len(ring)
         mean = missed = zero
-        for u, p in zip(placed, self.ring):
+        for u, p in zip(ring, self.ring):
             mean, missed = add(mean, p), add(missed, misses[u])
         mean = scaled(mean, share)
         distance, polygon, before = ZERO, zero, sub(self.ring[-1], mean)
@@ -1123,7 +1156,7 @@ class PartOfRing(Neighbourhood):
             d = sub(p, mean)
             distance += root(dot(d, d))
             polygon, before = add(polygon, cross(before, d)), d
-        self.length = max(distance * share if len(placed) > 1 else edge * 0.5, Single(0.25))
+        self.length = max(distance * share if len(ring) > 1 else edge * 0.5, Single(0.25))
         features = [scaled(missed, share), zero, zero]
         if self.fine:
             ring_mean, mean = mean, zero
@@ -1135,17 +1168,16 @@ class PartOfRing(Neighbourhood):
         self.straight_mean, self.mean = mean, self.frame(mean)
         self.features = [self.frame(f) for f in features]
 
-        self.kind = 6 if not self.fine and len(placed) == 1 else min(len(self.fine), 5)
-        self.ring_roughness = mean_roughness(mesh, placed)
+        self.kind = 6 if not self.fine and len(ring) == 1 else min(len(self.fine), 5)
+        self.ring_roughness = mean_roughness(mesh, ring)
         self.tip_roughness = mean_roughness(mesh, tips) if tips else self.ring_roughness
 
 
-def around_placed(mesh, misses, edge):
-    v = len(mesh.cell)
+def around_placed(mesh, v, is_placed, misses, edge):
     corners, closed = mesh.fan(mesh.corner_of[v])
     ring = [mesh.vertex(next_(c)) for c in corners] + ([] if closed else [mesh.vertex(prev(corners[-1]))])
-    placed = [u for u in ring if u < v]
-    return PartOfRing(mesh, corners, placed, misses, edge) if placed else None
+    ring = [u for u in ring if is_placed[u]]
+    return PartOfRing(mesh, corners, ring, is_placed, misses, edge) if ring else None
 
 
 def mean_roughness(mesh, vertices):

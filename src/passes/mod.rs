@@ -18,6 +18,7 @@ pub(crate) mod numbers;
 pub(crate) mod order;
 pub(crate) mod patch;
 pub(crate) mod placement;
+mod placing_order;
 pub(crate) mod plain;
 mod polygon;
 pub(crate) mod refine;

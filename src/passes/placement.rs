@@ -1,10 +1,11 @@
-//! Where the vertices of the base mesh lie (`format/SPEC.md`, section 7.1), in their order. Each is guessed from those
-//! of its neighbours that are placed already, as a vertex of a split is from its ring.
+//! Where the vertices of the base mesh lie (`format/SPEC.md`, section 7.1). Each is guessed from those of its neighbours
+//! that are placed already, as a vertex of a split is from its ring; the one of which most is known comes next.
 
 use super::Malformed;
 use super::base::Base;
 use super::coordinates::CoordinateModels;
 use super::guess::VertexGuess;
+use super::placing_order::PlacingOrder;
 use super::surroundings::{Fringe, Surroundings};
 use super::work::Work;
 use crate::bitstream::mixture::Mixture;
@@ -30,18 +31,30 @@ pub(crate) struct Placement<'a> {
     fringe: Fringe,
     /// Mean distance of the first vertices of components from the vertices before them.
     jump: f32,
+    /// The cell decoded last.
+    last: [i32; 3],
+    order: PlacingOrder,
 }
 
 impl<'a> Placement<'a> {
     /// Begins with the triangles of `base`; `target` has the cells in the encoder's order.
     pub(super) fn new(mut base: Base, precision: u32, target: Option<&'a [[i32; 3]]>) -> Self {
         let num_vertices = base.mesh.surface.corner_of.len();
-        base.mesh.positions.reserve_exact(num_vertices);
-        base.mesh.roughness.reserve_exact(num_vertices);
+        base.mesh.positions = vec![[0; 3]; num_vertices];
+        base.mesh.roughness = vec![[UNKNOWN_ROUGHNESS; 2]; num_vertices];
         let limit = 1_i64 << precision;
         let length = limit as f32 / 8.0;
-        let fringe = Fringe { misses: Vec::with_capacity(num_vertices), edge: length };
-        Self { base, target, limit, models: CoordinateModels::new(), fringe, jump: length }
+        let fringe = Fringe { misses: vec![Lanes::ZERO; num_vertices], edge: length };
+        Self {
+            base,
+            target,
+            limit,
+            models: CoordinateModels::new(),
+            fringe,
+            jump: length,
+            last: [(limit / 2) as i32; 3],
+            order: PlacingOrder::new(num_vertices),
+        }
     }
 
     /// Goes on; true if all vertices have their places.
@@ -52,33 +65,37 @@ impl<'a> Placement<'a> {
     ) -> Result<bool, Malformed> {
         let mut surroundings = Surroundings::default();
         let mesh = &mut self.base.mesh;
-        for v in mesh.positions.len()..mesh.surface.corner_of.len() {
-            if !work.take(mesh.surface.valence[v] as usize) {
-                return Ok(false);
-            }
+        while work.is_left() {
+            let Some(vertex) = self.order.next() else {
+                return Ok(true);
+            };
+            let v = vertex as usize;
+            work.take(mesh.surface.valence[v] as usize);
             let wanted = self.target.map_or([0; 3], |t| t[self.base.vertex_source[v] as usize]);
-            let outlook = surroundings.gather_placed(mesh, &self.fringe);
-            let Some(outlook) = outlook else {
-                let last = mesh.positions.last().copied().unwrap_or([(self.limit / 2) as i32; 3]);
+            let outlook = surroundings.gather_placed(mesh, vertex, &self.order, &self.fringe);
+            if let Some(outlook) = outlook {
+                let mut vertex = VertexGuess::with_outlook(&self.models.guesses, &surroundings, outlook);
+                let position =
+                    self.models.code_vertex(coder, &mut vertex, &surroundings, self.limit, wanted)?;
+                mesh.positions[v] = position;
+                mesh.roughness[v] = vertex.roughness();
+                let place = Lanes::between(surroundings.origin, position);
+                self.fringe.misses[v] = place - outlook.mean;
+                self.fringe.edge += (outlook.length * 2.0 - self.fringe.edge) * EDGE_RATE;
+                self.last = position;
+            } else {
+                let last = self.last;
                 let position = code_jump(coder, &mut self.models, last, self.jump, self.limit, wanted)?;
                 let size =
                     |axis: usize| (i64::from(position[axis]) - i64::from(last[axis])).unsigned_abs() as f32;
                 let size = (size(0) + size(1)) + size(2);
                 self.jump += (size * (1.0 / 3.0) - self.jump) * JUMP_RATE;
-                mesh.positions.push(position);
-                mesh.roughness.push([UNKNOWN_ROUGHNESS; 2]);
-                self.fringe.misses.push(Lanes::ZERO);
-                continue;
-            };
-            let mut vertex = VertexGuess::with_outlook(&self.models.guesses, &surroundings, outlook);
-            let position = self.models.code_vertex(coder, &mut vertex, &surroundings, self.limit, wanted)?;
-            mesh.positions.push(position);
-            mesh.roughness.push(vertex.roughness());
-            let place = Lanes::between(surroundings.origin, position);
-            self.fringe.misses.push(place - outlook.mean);
-            self.fringe.edge += (outlook.length * 2.0 - self.fringe.edge) * EDGE_RATE;
+                mesh.positions[v] = position;
+                self.last = position;
+            }
+            self.order.place(&mesh.surface, vertex);
         }
-        Ok(true)
+        Ok(false)
     }
 
     pub(crate) fn finish(self) -> Base {

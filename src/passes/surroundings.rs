@@ -2,6 +2,7 @@
 
 use super::GridMesh;
 use super::patch::Patches;
+use super::placing_order::PlacingOrder;
 use crate::lanes::Lanes;
 use crate::lifting::neighbourhood::{Neighbourhood, Outlook, PartOfRing};
 use crate::mesh::surface::{NO_CORNER, next, prev};
@@ -36,9 +37,9 @@ enum Tip {
     Coarse(u32),
 }
 
-/// What is known of a base mesh whose first vertices are placed.
+/// What is known of a base mesh while its vertices are placed.
 pub(crate) struct Fringe {
-    /// Of each of them how far its place lies from the mean of its outlook.
+    /// Of each placed one how far its place lies from the mean of its outlook.
     pub(crate) misses: Vec<Lanes>,
     /// Mean length of edges.
     pub(crate) edge: f32,
@@ -79,12 +80,18 @@ impl Surroundings {
         self.roughness = Lanes([ring[0], ring[1], tips[0], tips[1]]);
     }
 
-    /// Looks around the first vertex of a base mesh that has no position, at those before it. `None` if it has no
-    /// neighbour among them.
-    pub(crate) fn gather_placed(&mut self, mesh: &GridMesh, fringe: &Fringe) -> Option<Outlook> {
-        let (surface, vertex) = (&mesh.surface, mesh.positions.len());
-        let is_placed = |v: u32| (v as usize) < vertex;
-        let is_whole = surface.fan(surface.corner_of[vertex], &mut self.corners);
+    /// Looks around a vertex of a base mesh that has no position, at those that have one. `None` if it has no neighbour
+    /// among them.
+    pub(super) fn gather_placed(
+        &mut self,
+        mesh: &GridMesh,
+        vertex: u32,
+        order: &PlacingOrder,
+        fringe: &Fringe,
+    ) -> Option<Outlook> {
+        let surface = &mesh.surface;
+        let is_placed = |v: u32| order.is_placed(v);
+        let is_whole = surface.fan(surface.corner_of[vertex as usize], &mut self.corners);
         let around = &mut self.neighbourhood;
         around.clear();
         around.is_closed = false;
@@ -104,7 +111,7 @@ impl Surroundings {
         for &corner in &self.corners {
             let (a, b, across) =
                 (surface.vertex(next(corner)), surface.vertex(prev(corner)), surface.across(corner));
-            if across == NO_CORNER || !is_placed(a.max(b).max(surface.vertex(across))) {
+            if across == NO_CORNER || !(is_placed(a) && is_placed(b) && is_placed(surface.vertex(across))) {
                 continue;
             }
             let tip = surface.vertex(across);
