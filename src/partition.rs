@@ -4,13 +4,13 @@
 use crate::simplify::canonical::{Anchors, patch_order};
 use crate::simplify::collapse::CollapseTest;
 use crate::simplify::hole::HoleFiller;
+use crate::simplify::outlook::Outlook;
+use crate::simplify::packing::{ClassQueue, PackingClasses};
 use crate::simplify::memory::ErrorMemory;
 use crate::simplify::seams::{Demand, may_go};
 use crate::simplify::{LevelRecord, Seams, ShrinkingSurface, Star};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// How a level is split into odd and even vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -197,6 +197,10 @@ pub(crate) fn remove_in_order(
     record
 }
 
+/// Vertices that are looked at together before they are removed, and how many of them by one thread.
+const BLOCK: usize = 1 << 16;
+const GROUP: usize = 1 << 8;
+
 /// Removes the vertices of `chosen`, none next to another, in the reverse of the order in which a decoder
 /// brings them back: the ears of the boundary last. Those that cannot go stay, which costs some bits where
 /// the order then differs.
@@ -214,34 +218,57 @@ fn remove_as_decoded(
     let order = patch_order(surface, &odd, anchors);
     let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;
     let (ears, patches): (Vec<u32>, Vec<u32>) = order.into_iter().rev().partition(is_ear);
+    let order: Vec<u32> = patches.into_iter().chain(ears).collect();
+    let Geometry { grid, positions } = geometry;
     let mut record = LevelRecord::default();
     let mut star = Star::default();
     let mut filler = HoleFiller::default();
-    for corner in patches.into_iter().chain(ears) {
-        surface.read_star_from(corner, &mut star);
-        let mut demand = seams.demand(&star);
-        let Geometry { grid, positions } = geometry;
-        if demand != Demand::None {
-            let mut is_met = |d| filler.fill(surface, &star, grid, positions, tolerance, d).is_some();
-            if matches!(demand, Demand::Diagonal(_)) && !is_met(demand) {
-                demand = seams.demand_less(&star);
-            }
-            if !seams.hold() && !is_met(demand) {
-                demand = Demand::None;
-            }
+    let see_fans = tolerance < f64::INFINITY && seams.is_empty();
+    for block in order.chunks(BLOCK) {
+        let groups: Vec<Outlook> = (block.par_chunks(GROUP))
+            .map(|corners| Outlook::new(surface, grid, positions, memory, corners, see_fans))
+            .collect();
+        for ahead in groups.iter().flat_map(Outlook::iter) {
+            ahead.star(&mut star);
+            let demand = demand_that_is_met(seams, surface, geometry, &star, tolerance, &mut filler);
+            let filled = match demand {
+                Demand::Stay => continue,
+                Demand::None => {
+                    filler.fill_as_foreseen(surface, &star, grid, positions, tolerance, ahead.prospect)
+                }
+                _ => filler.fill(surface, &star, grid, positions, tolerance, demand),
+            };
+            let Some(ears) = filled else { continue };
+            memory.hand_on_to(star.vertex, ahead.heir);
+            let faces = surface.remove(&star, ears);
+            record.push(star.vertex, &star.ring, faces);
+            seams.remove(&star, ears, &mut record);
         }
-        if demand == Demand::Stay {
-            continue;
-        }
-        let filled = filler.fill(surface, &star, grid, positions, tolerance, demand);
-        let Some(ears) = filled else { continue };
-        memory.hand_on(&star);
-        let faces = surface.remove(&star, ears);
-        record.push(star.vertex, &star.ring, faces);
-        seams.remove(&star, ears, &mut record);
     }
     record.shrink_to_fit();
     record
+}
+
+/// What the seams want of the hole of a star, as far as there is a hole that meets it.
+fn demand_that_is_met(
+    seams: &Seams,
+    surface: &ShrinkingSurface,
+    Geometry { grid, positions }: Geometry,
+    star: &Star,
+    tolerance: f64,
+    filler: &mut HoleFiller,
+) -> Demand {
+    let mut demand = seams.demand(star);
+    if demand != Demand::None {
+        let mut is_met = |d| filler.fill(surface, star, grid, positions, tolerance, d).is_some();
+        if matches!(demand, Demand::Diagonal(_)) && !is_met(demand) {
+            demand = seams.demand_less(star);
+        }
+        if !seams.hold() && !is_met(demand) {
+            demand = Demand::None;
+        }
+    }
+    demand
 }
 
 /// Ascending score, ties by index: the order of Algorithm 1.
@@ -249,15 +276,22 @@ pub(crate) fn by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
     places_by_score(vertices, scores).into_iter().map(|i| vertices[i as usize]).collect()
 }
 
-/// The same as places in `vertices`.
+/// The same as places in `vertices`, which ascend.
 fn places_by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
-    order.sort_by(|&a, &b| {
-        let (a, b) = (a as usize, b as usize);
+    debug_assert!(vertices.is_sorted());
+    let mut keys = score_keys(scores);
+    keys.par_sort_unstable();
+    keys.into_iter().map(|(_, place)| place).collect()
+}
+
+/// Scores as integers of the same order, each with its place.
+fn score_keys(scores: &[f64]) -> Vec<(u64, u32)> {
+    let key = |score: f64| {
         // Adding 0 makes −0 equal to 0.
-        (scores[a] + 0.0).total_cmp(&(scores[b] + 0.0)).then(vertices[a].cmp(&vertices[b]))
-    });
-    order
+        let bits = (score + 0.0).to_bits();
+        if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
+    };
+    scores.iter().zip(0..).map(|(&score, place)| (key(score), place)).collect()
 }
 
 /// The vertices that may go: all but the most salient ones and those of high valence. Saliency is the error
@@ -272,8 +306,12 @@ fn candidates(
     let mut free = vertices.to_vec();
     if thinning.protected > 0.0 {
         let saliency = saliency(surface, memory, vertices, scores);
-        free = by_score(vertices, &saliency);
-        free.truncate(thinning.num_free(&saliency));
+        let num_free = thinning.num_free(&saliency);
+        let mut keys = score_keys(&saliency);
+        if num_free < keys.len() {
+            keys.select_nth_unstable(num_free);
+        }
+        free = keys[..num_free].iter().map(|&(_, place)| vertices[place as usize]).collect();
     }
     let valence = |v: u32| surface.surface.valence[v as usize];
     free.retain(|&v| valence(v) <= thinning.max_valence);
@@ -316,44 +354,62 @@ fn leave_seams(
 /// valence less some of the share of their neighbours that are next to a removed vertex already is least,
 /// ties by index.
 fn closely_packed(surface: &ShrinkingSurface, free: &[u32]) -> Vec<u32> {
-    /// What a ring counts, all of whose vertices are next to others, in units of valence.
-    const WEIGHT: f64 = 0.7;
-    let num_slots = surface.surface.corner_of.len();
-    let mut may_go: BitVec = BitVec::repeat(false, num_slots);
-    free.iter().for_each(|&v| may_go.set(v as usize, true));
-    let mut touched: BitVec = BitVec::repeat(false, num_slots);
-    let mut num_touched = vec![0_u8; num_slots];
-    let key = |v: u32, num_touched: &[u8]| {
-        let degree = f64::from(surface.surface.valence[v as usize]);
-        let key = degree - WEIGHT * f64::from(num_touched[v as usize]) / degree;
-        // In one number, as the queue takes a good part of the encoder's time.
-        Reverse(((1000.0 * key) as u64) << 32 | u64::from(v))
+    let surface_of = &surface.surface;
+    let num_slots = surface_of.corner_of.len();
+    let largest = free.iter().map(|&v| surface_of.valence[v as usize]).max().unwrap_or(0);
+    let classes = PackingClasses::new(largest as usize);
+    // Of each free vertex how many of its neighbours are next to a removed vertex.
+    let mut states = vec![Packing::STAYS; num_slots];
+    let class = |v: u32, Packing(touched): Packing| {
+        classes.of(surface_of.valence[v as usize] as usize, usize::from(touched))
     };
-    let mut queue: BinaryHeap<_> = free.iter().map(|&v| key(v, &num_touched)).collect();
+    let mut queue = ClassQueue::new(classes.count, num_slots);
+    for &v in free {
+        states[v as usize] = Packing::default();
+        queue.insert(class(v, Packing::default()), v);
+    }
     let mut chosen = Vec::new();
-    let (mut star, mut second) = (Star::default(), Star::default());
-    let (mut fresh, mut nearer) = (Vec::new(), Vec::new());
-    while let Some(first) = queue.pop() {
-        let v = first.0 as u32;
-        if touched[v as usize] || key(v, &num_touched) != first {
-            continue;
-        }
+    let mut fresh = Vec::new();
+    while let Some(v) = queue.pop() {
         chosen.push(v);
-        surface.read_star(v, &mut star);
-        fresh.extend(star.ring.iter().copied().filter(|&u| !touched[u as usize]));
-        fresh.iter().chain([&v]).for_each(|&u| touched.set(u as usize, true));
-        for u in fresh.drain(..) {
-            surface.read_star(u, &mut second);
-            for &w in second.ring.iter().filter(|&&w| may_go[w as usize] && !touched[w as usize]) {
-                num_touched[w as usize] = num_touched[w as usize].saturating_add(1);
-                nearer.push(w);
+        states[v as usize] = Packing::TOUCHED;
+        surface.for_each_neighbour(v, |u| {
+            let state = std::mem::replace(&mut states[u as usize], Packing::TOUCHED);
+            if state.is_free() {
+                queue.remove(class(u, state), u);
             }
+            if state != Packing::TOUCHED {
+                fresh.push(u);
+            }
+        });
+        for u in fresh.drain(..) {
+            surface.for_each_neighbour(u, |w| {
+                let state = &mut states[w as usize];
+                if state.is_free() {
+                    queue.remove(class(w, *state), w);
+                    state.0 += 1;
+                    queue.insert(class(w, *state), w);
+                }
+            });
         }
-        nearer.sort_unstable();
-        nearer.dedup();
-        queue.extend(nearer.drain(..).map(|w| key(w, &num_touched)));
     }
     chosen
+}
+
+/// What is known of a vertex while others are chosen: if it is free, the number of neighbours that are next to a
+/// removed vertex.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+struct Packing(u8);
+
+impl Packing {
+    /// It is not free.
+    const STAYS: Self = Self(u8::MAX);
+    /// It is removed or next to a removed vertex.
+    const TOUCHED: Self = Self(u8::MAX - 1);
+
+    fn is_free(self) -> bool {
+        self.0 < Self::TOUCHED.0
+    }
 }
 
 /// Error of the best collapse of each vertex, weighed by the rank of its score if there are scores.

@@ -4,7 +4,7 @@
 //! Departs from section 6 of the paper, which collapses along the shortest legal edge: measured by the
 //! distance of prefixes from the surface, that is up to 8 dB worse.
 
-use super::collapse::is_legal;
+use super::collapse::{is_legal, keeps_sides, makes_new_edges};
 use super::deviation::Deviation;
 use super::seams::Demand;
 use super::triangulate::EarClipper;
@@ -15,6 +15,16 @@ use super::{ShrinkingSurface, Star};
 const UNFIT: f64 = 8.0;
 /// Deviations below this share of the star's extent are as good as none: a fiftieth of its spokes.
 const SMALL: f64 = 4e-4;
+
+/// What does not depend on which vertices went before, as long as the star's own did not: the fans.
+#[derive(Clone, Copy)]
+pub(crate) struct Prospect {
+    /// The best half-edge collapse that keeps every face on its side, and its deviation.
+    target: u32,
+    deviation: f64,
+    /// Whether it deviates too much, so that the vertex stays.
+    is_unfit: bool,
+}
 
 /// Scratch space of the choice.
 #[derive(Default)]
@@ -44,34 +54,105 @@ impl HoleFiller {
             self.ears.clear();
             return is_ear.then_some(&self.ears);
         }
-        let clipped = self.clipper.clip(surface, star, grid, demand);
-        if tolerance == f64::INFINITY && clipped.is_some() {
-            return clipped;
+        if tolerance == f64::INFINITY && self.clipper.clip(surface, star, grid, demand).is_some() {
+            return Some(self.clipper.ears());
         }
         self.deviation.set(star, positions);
-        let mut best = (f64::INFINITY, None);
-        let mut least = f64::INFINITY;
-        let may_fan = |&i: &usize| {
+        let may_fan = |i: usize| {
             demand == Demand::None || fan(i, degree).all(|ear| demand.allows([i, ear, (ear + 1) % degree]))
         };
-        let targets = (0..degree).filter(|&i| star.is_closed() || i == 0 || i == degree - 1);
-        for target in targets.filter(may_fan) {
-            let deviation = self.deviation.of(fan(target, degree), best.0);
+        let is_legal = |i: usize| is_legal(surface, star, i, grid);
+        let (best, is_unfit) = self.best_fan(star, 0, may_fan, is_legal);
+        if is_unfit {
+            return None;
+        }
+        self.choose(surface, star, grid, tolerance, demand, best)
+    }
+
+    /// What [`fill`](Self::fill) with no demand finds of the fans. `first` is the one of which most is expected.
+    pub(crate) fn foresee(
+        &mut self,
+        star: &Star,
+        grid: &[[i32; 3]],
+        positions: &[[f64; 3]],
+        first: usize,
+    ) -> Option<Prospect> {
+        if star.degree() < 3 {
+            return None;
+        }
+        self.deviation.set(star, positions);
+        let ((deviation, target), is_unfit) =
+            self.best_fan(star, first, |_| true, |i| keeps_sides(star, i, grid));
+        let target = if is_unfit { 0 } else { target? as u32 };
+        Some(Prospect { target, deviation, is_unfit })
+    }
+
+    /// The same as [`fill`](Self::fill) with no demand, if all that was foreseen comes true.
+    pub(crate) fn fill_as_foreseen(
+        &mut self,
+        surface: &ShrinkingSurface,
+        star: &Star,
+        grid: &[[i32; 3]],
+        positions: &[[f64; 3]],
+        tolerance: f64,
+        prospect: Option<Prospect>,
+    ) -> Option<&[usize]> {
+        let Some(Prospect { target, deviation, is_unfit }) = prospect else {
+            return self.fill(surface, star, grid, positions, tolerance, Demand::None);
+        };
+        if is_unfit {
+            return None;
+        }
+        if !makes_new_edges(surface, star, target as usize) {
+            return self.fill(surface, star, grid, positions, tolerance, Demand::None);
+        }
+        self.deviation.set(star, positions);
+        self.choose(surface, star, grid, tolerance, Demand::None, (deviation, Some(target as usize)))
+    }
+
+    /// The legal fan that deviates least, the first one of several, and whether that is much more than the
+    /// least of all.
+    fn best_fan(
+        &mut self,
+        star: &Star,
+        first: usize,
+        may_fan: impl Fn(usize) -> bool,
+        is_legal: impl Fn(usize) -> bool,
+    ) -> ((f64, Option<usize>), bool) {
+        let degree = star.degree();
+        let mut best = (f64::INFINITY, None);
+        let mut least = f64::INFINITY;
+        let is_target = |&i: &usize| (star.is_closed() || i == 0 || i == degree - 1) && may_fan(i);
+        let others = (0..degree).filter(|&i| i != first);
+        for target in std::iter::once(first).chain(others).filter(is_target) {
+            let deviation = self.deviation.of_fan(target, best.0);
             least = least.min(deviation);
-            if deviation < best.0 && is_legal(surface, star, target, grid) {
+            let is_better = deviation < best.0 || deviation == best.0 && best.1.is_some_and(|b| target < b);
+            if is_better && is_legal(target) {
                 best = (deviation, Some(target));
             }
         }
-        if best.0 > UNFIT * (least + SMALL * self.deviation.extent()) {
-            return None;
-        }
-        let bound = best.0 * tolerance;
-        match (clipped, best.1) {
+        (best, best.0 > UNFIT * (least + SMALL * self.deviation.extent()))
+    }
+
+    /// The hole that is cheap to code, unless the best fan is much better.
+    fn choose(
+        &mut self,
+        surface: &ShrinkingSurface,
+        star: &Star,
+        grid: &[[i32; 3]],
+        tolerance: f64,
+        demand: Demand,
+        (deviation, target): (f64, Option<usize>),
+    ) -> Option<&[usize]> {
+        let bound = deviation * tolerance;
+        let clipped = self.clipper.clip(surface, star, grid, demand);
+        match (clipped, target) {
             (Some(ears), None) => Some(ears),
             (Some(ears), _) if self.deviation.of(ears.iter().copied(), bound) <= bound => Some(ears),
             (_, Some(target)) => {
                 self.ears.clear();
-                self.ears.extend(fan(target, degree));
+                self.ears.extend(fan(target, star.degree()));
                 Some(&self.ears)
             }
             (None, None) => None,

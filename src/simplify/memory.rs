@@ -98,7 +98,12 @@ impl<'a> ErrorMemory<'a> {
     /// The star's vertex goes: the neighbour where that costs least remembers it.
     pub(crate) fn hand_on(&mut self, star: &Star) {
         let (_, heir) = self.least_error(star);
-        let moved = self.quadrics[star.vertex as usize].moved(self.way(star.vertex, heir));
+        self.hand_on_to(star.vertex, heir);
+    }
+
+    /// A vertex goes: its `heir` remembers it.
+    pub(crate) fn hand_on_to(&mut self, vertex: u32, heir: u32) {
+        let moved = self.quadrics[vertex as usize].moved(self.way(vertex, heir));
         self.quadrics[heir as usize].add(&moved);
     }
 

@@ -6,6 +6,8 @@ mod deviation;
 pub(crate) mod geometry;
 pub(crate) mod hole;
 pub(crate) mod memory;
+pub(crate) mod outlook;
+pub(crate) mod packing;
 pub(crate) mod record;
 pub(crate) mod seams;
 pub(crate) mod shrinking;

@@ -81,6 +81,31 @@ impl ShrinkingSurface {
         }
     }
 
+    /// Calls `see` with each neighbour, in any order.
+    #[inline]
+    pub(crate) fn for_each_neighbour(&self, vertex: u32, mut see: impl FnMut(u32)) {
+        let s = &self.surface;
+        let start = s.corner_of[vertex as usize];
+        let mut corner = start;
+        loop {
+            see(s.vertex(next(corner)));
+            let left = s.swing_left(corner);
+            if left == start {
+                return;
+            }
+            if left == NO_CORNER {
+                break;
+            }
+            corner = left;
+        }
+        see(s.vertex(prev(corner)));
+        let mut corner = s.swing_right(start);
+        while corner != NO_CORNER {
+            see(s.vertex(next(corner)));
+            corner = s.swing_right(corner);
+        }
+    }
+
     /// True if an edge joins the two vertices.
     pub(crate) fn has_edge(&self, a: u32, b: u32) -> bool {
         let s = &self.surface;
