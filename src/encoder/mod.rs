@@ -7,6 +7,7 @@ mod options;
 mod order;
 pub(crate) mod quantise;
 mod schedule;
+mod scout;
 mod trailing;
 mod write;
 
