@@ -1,12 +1,14 @@
 //! From M^L down: level by level the descriptor ranks the vertices and the partition removes the odd ones.
 
-use crate::descriptors::{self, Descriptor, Features, Window};
+use crate::TriMesh;
+use crate::descriptors::{Descriptor, Evaluation, Features, Window};
 use crate::levels::Level;
 use crate::mesh::Surface;
-use crate::partition::{Geometry, Optimize, Partition, is_coarse, remove_level};
+use crate::partition::{Geometry, Optimize, Partition, Ranked, is_coarse, remove_level};
 use crate::simplify::canonical::Anchors;
 use crate::simplify::memory::ErrorMemory;
 use crate::simplify::{LevelRecord, Seams, ShrinkingSurface};
+use crate::thinning::{self, Saliency, Thinning};
 use bitvec::vec::BitVec;
 
 /// Most levels, whatever the wish.
@@ -133,21 +135,32 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Empty where the partition does not look at them.
-    fn scores(&mut self) -> Vec<f64> {
+    /// What the partition goes by.
+    fn ranked(&mut self) -> Ranked {
         let Settings { descriptor, window, partition, optimize, is_hasty, .. } = self.settings;
-        if !partition.uses_descriptor(optimize) || is_hasty && partition == Partition::Balanced {
-            return Vec::new();
+        let (mean_edge, positions) = (self.mean_edge, self.geometry.positions);
+        let vertices = &self.level.vertices;
+        let features = || self.features.as_ref().map(|features| features.of_vertices(vertices));
+        if partition == Partition::Algorithm1 {
+            let features = features();
+            let evaluate = |mesh: &TriMesh| {
+                Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge).everywhere()
+            };
+            return Ranked::ByScore(self.level.with_mesh(positions, evaluate));
         }
-        let mean_edge = self.mean_edge;
-        let features = self.features.as_ref().map(|features| features.of_vertices(&self.level.vertices));
-        self.level.with_mesh(self.geometry.positions, |mesh| {
-            let augmented = features.and_then(|features| {
-                let see_all = descriptors::evaluate_with_features;
-                see_all(descriptor, mesh, &features, &window, mean_edge, &|_| ()).ok()
-            });
-            augmented.unwrap_or_else(|| descriptors::evaluate(descriptor, mesh, &window, mean_edge))
-        })
+        let thinning = Thinning::of_level(optimize, vertices.len(), &self.shrinking);
+        if !thinning.protects() {
+            return Ranked::BySaliency(Saliency::none(vertices.len()));
+        }
+        let errors = thinning::errors(&self.shrinking, &self.memory, vertices);
+        if is_hasty {
+            return Ranked::BySaliency(Saliency::of_errors(thinning, errors));
+        }
+        let features = features();
+        Ranked::BySaliency(self.level.with_mesh(positions, |mesh| {
+            let mut evaluation = Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge);
+            Saliency::weighed(thinning, errors, |wanted| evaluation.at(wanted))
+        }))
     }
 }
 
@@ -159,9 +172,8 @@ impl Iterator for Descent<'_> {
             return None;
         }
         let optimize = self.settings.optimize;
-        let scores = self.scores();
+        let ranked = self.ranked();
         let record = remove_level(
-            self.settings.partition,
             self.settings.optimize,
             self.settings.max_valence,
             &mut self.shrinking,
@@ -170,7 +182,7 @@ impl Iterator for Descent<'_> {
             &self.anchors,
             &mut self.seams,
             &self.level.vertices,
-            &scores,
+            ranked,
         );
         if record.len() == 0 {
             let num_vertices = self.level.vertices.len();

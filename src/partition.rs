@@ -4,11 +4,12 @@
 use crate::simplify::canonical::{Anchors, patch_order};
 use crate::simplify::collapse::CollapseTest;
 use crate::simplify::hole::HoleFiller;
+use crate::simplify::memory::ErrorMemory;
 use crate::simplify::outlook::Outlook;
 use crate::simplify::packing::{ClassQueue, PackingClasses};
-use crate::simplify::memory::ErrorMemory;
 use crate::simplify::seams::{Demand, may_go};
 use crate::simplify::{LevelRecord, Seams, ShrinkingSurface, Star};
+use crate::thinning::{Saliency, Thinning, score_keys};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 
@@ -36,11 +37,6 @@ impl Partition {
             Partition::Balanced => "balanced",
             Partition::Algorithm1 => "algorithm1",
         }
-    }
-
-    /// Whether the descriptor has a say.
-    pub(crate) fn uses_descriptor(self, optimize: Optimize) -> bool {
-        self == Partition::Algorithm1 || optimize != Optimize::Size
     }
 }
 
@@ -80,61 +76,10 @@ impl Optimize {
     }
 }
 
-/// How a level is thinned out.
-#[derive(Clone, Copy)]
-struct Thinning {
-    /// Share of the vertices, the most salient ones, that stay.
-    protected: f64,
-    /// So many times the median saliency is too much to go as well.
-    outlier: Option<f64>,
-    /// Largest valence that goes.
-    max_valence: u32,
-    /// How much worse (squared distance) a hole may be closed to be cheaper to code.
-    tolerance: f64,
-}
-
-/// On scans about a fifth of the vertices are beyond it. Where creases bound flat parts, almost all of the
-/// error is along the creases: more of them stay, and the flat parts are thinned out first.
-const OUTLIER: f64 = 3.5;
-/// Largest share that stays for that reason.
-const MOST_OUTLIERS: f64 = 0.6;
-
-impl Thinning {
-    fn new(protected: f64, outlier: Option<f64>, max_valence: u32, tolerance: f64) -> Self {
-        Self { protected, outlier, max_valence, tolerance }
-    }
-
-    /// How many of the vertices may go.
-    fn num_free(&self, saliency: &[f64]) -> usize {
-        let part = |share: f64| ((1.0 - share) * saliency.len() as f64).ceil() as usize;
-        let most = part(self.protected);
-        let Some(outlier) = self.outlier else { return most };
-        let mut sorted = saliency.to_vec();
-        let median = *sorted.select_nth_unstable_by(saliency.len() / 2, f64::total_cmp).1;
-        let usual = saliency.iter().filter(|&&s| s <= outlier * median).count();
-        usual.clamp(part(MOST_OUTLIERS).min(most), most)
-    }
-
-    /// Most vertices come back in the finest levels: there the cost of coding counts, before that
-    /// the shape.
-    fn of(optimize: Optimize, is_fine: bool) -> Self {
-        match (optimize, is_fine) {
-            (Optimize::Size, _) => Self::new(0.0, None, 6, f64::INFINITY),
-            (Optimize::Balanced, true) => Self::new(0.1, None, 6, 8.0),
-            (Optimize::Balanced, false) => Self::new(0.2, Some(OUTLIER), 7, 2.0),
-            (Optimize::Prefix, _) => Self::new(0.2, Some(OUTLIER), 7, 1.0),
-        }
-    }
-}
-
-/// Levels with more than this share of all vertices are fine.
-const FINE_SHARE: f64 = 0.7;
-
-/// Removes one level of odd vertices. `vertices` are those of the level and `scores` their
-/// descriptor values, in the same order; there are none if the descriptor has no say.
+/// Removes one level of odd vertices. `vertices` are those of the level; `ranked` is what says in which order or
+/// which of them go.
 #[expect(clippy::too_many_arguments, reason = "what a level is, and what is kept from one to the next")]
 pub(crate) fn remove_level(
-    partition: Partition,
     optimize: Optimize,
     max_valence: Option<u32>,
     surface: &mut ShrinkingSurface,
@@ -143,25 +88,33 @@ pub(crate) fn remove_level(
     anchors: &Anchors,
     seams: &mut Seams,
     vertices: &[u32],
-    scores: &[f64],
+    ranked: Ranked,
 ) -> LevelRecord {
-    let is_fine = vertices.len() as f64 > FINE_SHARE * surface.surface.corner_of.len() as f64;
-    let mut thinning = Thinning::of(optimize, is_fine);
-    thinning.max_valence = max_valence.unwrap_or(thinning.max_valence);
-    match partition {
-        Partition::Algorithm1 => {
-            let mut order = by_score(vertices, scores);
+    match ranked {
+        Ranked::ByScore(scores) => {
+            let mut order = by_score(vertices, &scores);
             order.retain(|&v| !anchors.is_glued(v));
             remove_in_order(surface, geometry, &order, Some(memory), seams)
         }
-        Partition::Balanced => {
-            let mut free = candidates(surface, memory, vertices, scores, thinning);
-            free.retain(|&v| !anchors.contain(v));
+        Ranked::BySaliency(saliency) => {
+            let thinning = Thinning::of_level(optimize, vertices.len(), surface);
+            let max_valence = max_valence.unwrap_or(thinning.max_valence);
+            let valence = |v: u32| surface.surface.valence[v as usize];
+            let mut free = saliency.least(vertices);
+            free.retain(|&v| valence(v) <= max_valence && !anchors.contain(v));
             leave_seams(optimize, surface, seams, vertices.len(), &mut free);
             let chosen = closely_packed(surface, &free);
             remove_as_decoded(surface, geometry, &chosen, thinning.tolerance, memory, anchors, seams)
         }
     }
+}
+
+/// What a partition goes by.
+pub(crate) enum Ranked {
+    /// Algorithm 1: the descriptor, of each vertex.
+    ByScore(Vec<f64>),
+    /// The balanced partition.
+    BySaliency(Saliency),
 }
 
 /// Removes the vertices of `order` one after the other, unless a neighbour went before or no collapse is
@@ -284,40 +237,6 @@ fn places_by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
     keys.into_iter().map(|(_, place)| place).collect()
 }
 
-/// Scores as integers of the same order, each with its place.
-fn score_keys(scores: &[f64]) -> Vec<(u64, u32)> {
-    let key = |score: f64| {
-        // Adding 0 makes −0 equal to 0.
-        let bits = (score + 0.0).to_bits();
-        if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
-    };
-    scores.iter().zip(0..).map(|(&score, place)| (key(score), place)).collect()
-}
-
-/// The vertices that may go: all but the most salient ones and those of high valence. Saliency is the error
-/// of the best collapse, between half and twice as much by the rank of the descriptor.
-fn candidates(
-    surface: &ShrinkingSurface,
-    memory: &ErrorMemory,
-    vertices: &[u32],
-    scores: &[f64],
-    thinning: Thinning,
-) -> Vec<u32> {
-    let mut free = vertices.to_vec();
-    if thinning.protected > 0.0 {
-        let saliency = saliency(surface, memory, vertices, scores);
-        let num_free = thinning.num_free(&saliency);
-        let mut keys = score_keys(&saliency);
-        if num_free < keys.len() {
-            keys.select_nth_unstable(num_free);
-        }
-        free = keys[..num_free].iter().map(|&(_, place)| vertices[place as usize]).collect();
-    }
-    let valence = |v: u32| surface.surface.valence[v as usize];
-    free.retain(|&v| valence(v) <= thinning.max_valence);
-    free
-}
-
 /// Whether so few vertices are left that they may as well be the base, if seams want them. The smallest file is the one
 /// whose seams are kept, unless there are only seams from the start.
 pub(crate) fn is_coarse(optimize: Optimize, num_vertices: usize, surface: &ShrinkingSurface) -> bool {
@@ -409,41 +328,5 @@ impl Packing {
 
     fn is_free(self) -> bool {
         self.0 < Self::TOUCHED.0
-    }
-}
-
-/// Error of the best collapse of each vertex, weighed by the rank of its score if there are scores.
-fn saliency(surface: &ShrinkingSurface, memory: &ErrorMemory, vertices: &[u32], scores: &[f64]) -> Vec<f64> {
-    const MIN_PARALLEL: usize = 2048;
-    let mut weight = vec![1.0_f64; vertices.len()];
-    let places = if scores.is_empty() { Vec::new() } else { places_by_score(vertices, scores) };
-    for (rank, place) in places.into_iter().enumerate() {
-        weight[place as usize] = (2.0 * rank as f64 / vertices.len() as f64 - 1.0).exp2();
-    }
-    let weighed = |star: &mut Star, (&v, weight): (&u32, f64)| {
-        surface.read_star(v, star);
-        weight * memory.least_error(star).0
-    };
-    let pairs = vertices.par_iter().zip(weight).with_min_len(MIN_PARALLEL);
-    pairs.map_init(Star::default, weighed).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn creases_stay_where_most_of_the_surface_is_flat() {
-        let thinning = Thinning::of(Optimize::Balanced, false);
-        let even: Vec<f64> = (0..100).map(|i| 1.0 + f64::from(i) / 100.0).collect();
-        assert_eq!(thinning.num_free(&even), 80);
-        let mut creased = vec![0.0; 70];
-        creased.resize(100, 1.0);
-        assert_eq!(thinning.num_free(&creased), 70);
-        creased.resize(1000, 1.0);
-        assert_eq!(thinning.num_free(&creased), 800);
-        let flat = Thinning::of(Optimize::Balanced, true);
-        assert_eq!(flat.num_free(&[0.0; 10]), 9);
-        assert_eq!(Thinning::of(Optimize::Prefix, true).num_free(&[0.0]), 1);
     }
 }

@@ -161,7 +161,19 @@ pub fn evaluate_reading(
     progress: &(dyn Fn(usize) + Sync),
 ) -> Vec<f64> {
     let surface = prepare(mesh, window, mean_edge, readings.normals);
-    evaluate_prepared(mesh, surface, progress, |surface| match descriptor {
+    evaluate_prepared(mesh, surface.as_ref(), progress, |surface| {
+        evaluate_surface(descriptor, surface, window, readings, progress)
+    })
+}
+
+fn evaluate_surface(
+    descriptor: Descriptor,
+    surface: &Surface,
+    window: &Window,
+    readings: Readings,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Vec<f64> {
+    match descriptor {
         Descriptor::Pca => pca::evaluate(surface, window, progress),
         Descriptor::Nfv => nfv::evaluate(surface, window, progress),
         Descriptor::Casorati => casorati::evaluate(surface, window, progress),
@@ -169,7 +181,62 @@ pub fn evaluate_reading(
         Descriptor::Harris3d => harris3d::evaluate(surface, window, progress),
         Descriptor::Sqem => sqem::evaluate(surface, window, progress),
         Descriptor::PcaQem => pca_qem::evaluate(surface, window, readings.pca_quadric, progress),
-    })
+    }
+}
+
+/// A descriptor on a mesh, evaluated where it is asked.
+pub(crate) struct Evaluation<'a> {
+    descriptor: Descriptor,
+    mesh: &'a TriMesh,
+    features: Option<&'a Features>,
+    window: Window,
+    surface: Option<Surface>,
+    /// All values, of a descriptor that needs something of each vertex first.
+    values: Option<Vec<f64>>,
+}
+
+impl<'a> Evaluation<'a> {
+    /// `features` count only if the descriptor knows attributes.
+    pub(crate) fn new(
+        descriptor: Descriptor,
+        mesh: &'a TriMesh,
+        features: Option<&'a Features>,
+        window: Window,
+        mean_edge: f64,
+    ) -> Self {
+        let surface = prepare(mesh, &window, mean_edge, NormalWeights::default());
+        let features = features.filter(|_| descriptor.knows_attributes());
+        Self { descriptor, mesh, features, window, surface, values: None }
+    }
+
+    /// The values of all vertices, as [`evaluate`] and [`evaluate_with_features`] have them.
+    pub(crate) fn everywhere(mut self) -> Vec<f64> {
+        self.at(&[])
+    }
+
+    /// The values where they are `wanted`; everywhere if that is empty.
+    pub(crate) fn at(&mut self, wanted: &[bool]) -> Vec<f64> {
+        let Self { descriptor, mesh, features, window, ref mut surface, ref mut values } = *self;
+        if let Some(values) = values {
+            return values.clone();
+        }
+        let needs_all = features.is_some() || matches!(descriptor, Descriptor::Nfv | Descriptor::PcaQem);
+        if let Some(surface) = surface {
+            surface.want(if needs_all { &[] } else { wanted });
+        }
+        let evaluated =
+            evaluate_prepared(mesh, surface.as_ref(), &|_| (), |surface| match (features, descriptor) {
+                (Some(features), Descriptor::Pca) => {
+                    augmented::variation(surface, features, &window, &|_| ())
+                }
+                (Some(features), _) => augmented::pca_qem(surface, features, &window, &|_| ()),
+                _ => evaluate_surface(descriptor, surface, &window, Readings::default(), &|_| ()),
+            });
+        if needs_all {
+            *values = Some(evaluated.clone());
+        }
+        evaluated
+    }
 }
 
 /// As [`evaluate_with_progress`], of vertices with attributes: `features` has one row per vertex of `mesh`.
@@ -193,7 +260,9 @@ pub fn evaluate_with_features(
         _ => return Err(FeaturesError::Descriptor { descriptor }),
     };
     let prepared = prepare(mesh, window, mean_edge, NormalWeights::default());
-    Ok(evaluate_prepared(mesh, prepared, progress, |surface| evaluate(surface, features, window, progress)))
+    Ok(evaluate_prepared(mesh, prepared.as_ref(), progress, |surface| {
+        evaluate(surface, features, window, progress)
+    }))
 }
 
 /// `None` where every value is 0.
@@ -204,7 +273,7 @@ fn prepare(mesh: &TriMesh, window: &Window, mean_edge: f64, normals: NormalWeigh
 
 fn evaluate_prepared(
     mesh: &TriMesh,
-    surface: Option<Surface>,
+    surface: Option<&Surface>,
     progress: &(dyn Fn(usize) + Sync),
     evaluate: impl FnOnce(&Surface) -> Vec<f64>,
 ) -> Vec<f64> {
@@ -212,7 +281,7 @@ fn evaluate_prepared(
         progress(mesh.num_vertices());
         return vec![0.0; mesh.num_vertices()];
     };
-    let mut values = surface.in_mesh_order(&evaluate(&surface));
+    let mut values = surface.in_mesh_order(&evaluate(surface));
     for value in &mut values {
         // Also turns −0 and NaN into +0: only windows far beyond any sensible radius could make a NaN.
         *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };

@@ -30,6 +30,8 @@ pub(super) struct Surface {
     mesh_vertices: Vec<u32>,
     /// 1 / l̄ in the units of the scaled positions.
     pub(super) unit: f64,
+    /// Which vertices are to be evaluated; all if empty.
+    wanted: Vec<bool>,
 }
 
 impl Surface {
@@ -64,7 +66,7 @@ impl Surface {
             || Adjacency::new(mesh_vertices.len(), &triangles),
             || set_normals(&mut vertices, &triangles, normals),
         );
-        Some(Self { triangles, adjacency, vertices, mesh_vertices, unit })
+        Some(Self { triangles, adjacency, vertices, mesh_vertices, unit, wanted: Vec::new() })
     }
 
     pub(super) fn num_vertices(&self) -> usize {
@@ -74,6 +76,19 @@ impl Surface {
     /// The vertex of the mesh.
     pub(super) fn mesh_vertex(&self, vertex: u32) -> usize {
         self.mesh_vertices[vertex as usize] as usize
+    }
+
+    /// Evaluates only the vertices of the mesh that are `wanted` from now on; all if that is empty.
+    pub(super) fn want(&mut self, wanted: &[bool]) {
+        self.wanted.clear();
+        if !wanted.is_empty() {
+            self.wanted.extend(self.mesh_vertices.iter().map(|&v| wanted[v as usize]));
+        }
+    }
+
+    /// Whether a vertex has neighbours and is to be evaluated.
+    pub(super) fn wants(&self, vertex: usize) -> bool {
+        self.wanted.get(vertex).is_none_or(|&wanted| wanted) && !self.adjacency.of(vertex).is_empty()
     }
 
     /// Puts one value per vertex back into the order of the mesh.

@@ -74,7 +74,7 @@ pub(super) fn map_windows<T: Clone + Default + Send>(
         |local, (block, values)| {
             for (i, slot) in values.iter_mut().enumerate() {
                 let v = block * BLOCK + i;
-                if !surface.adjacency.of(v).is_empty() {
+                if surface.wants(v) {
                     local.gather(v);
                     *slot = value(local);
                 }

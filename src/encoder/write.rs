@@ -39,7 +39,8 @@ pub(super) fn write(
     schedule: &Schedule,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Vec<u8> {
-    let (mut writer, mut names) = PassWriter::new(hierarchy, cells, attributes, exact, schedule.base_precision);
+    let (mut writer, mut names) =
+        PassWriter::new(hierarchy, cells, attributes, exact, schedule.base_precision);
     let mut scout = Scout::new(hierarchy.num_faces);
     let is_split = |step: &&Step| matches!(step, Step::Split(_));
     let num_first = schedule.steps.iter().take_while(|step| !is_split(step)).count();

@@ -77,11 +77,12 @@ pub(crate) fn keeps_sides(star: &Star, target: usize, grid: &[[i32; 3]]) -> bool
     let u = star.ring[target];
     let others = |offset: usize| star.ring[(target + offset) % degree];
     let cell = |v: u32| grid[v as usize];
-    degree == 2 || (1..degree - 1).all(|i| {
-        let (a, b) = (others(i), others(i + 1));
-        let before = area_vector(cell(star.vertex), cell(a), cell(b));
-        before == [0; 3] || is_same_side(before, area_vector(cell(u), cell(a), cell(b)))
-    })
+    degree == 2
+        || (1..degree - 1).all(|i| {
+            let (a, b) = (others(i), others(i + 1));
+            let before = area_vector(cell(star.vertex), cell(a), cell(b));
+            before == [0; 3] || is_same_side(before, area_vector(cell(u), cell(a), cell(b)))
+        })
 }
 
 /// True if a face outside the closed star of degree three has the same three vertices.

@@ -1,0 +1,205 @@
+//! Which vertices of a level may go: those of little saliency, the error of the best collapse, between half and twice
+//! as much by the rank of the descriptor.
+
+use crate::partition::Optimize;
+use crate::simplify::memory::ErrorMemory;
+use crate::simplify::{ShrinkingSurface, Star};
+use rayon::prelude::*;
+
+/// How a level is thinned out.
+#[derive(Clone, Copy)]
+pub(crate) struct Thinning {
+    /// Share of the vertices, the most salient ones, that stay.
+    protected: f64,
+    /// So many times the median saliency is too much to go as well.
+    outlier: Option<f64>,
+    /// Largest valence that goes.
+    pub(crate) max_valence: u32,
+    /// How much worse (squared distance) a hole may be closed to be cheaper to code.
+    pub(crate) tolerance: f64,
+}
+
+/// On scans about a fifth of the vertices are beyond it. Where creases bound flat parts, almost all of the
+/// error is along the creases: more of them stay, and the flat parts are thinned out first.
+const OUTLIER: f64 = 3.5;
+/// Largest share that stays for that reason.
+const MOST_OUTLIERS: f64 = 0.6;
+
+impl Thinning {
+    fn new(protected: f64, outlier: Option<f64>, max_valence: u32, tolerance: f64) -> Self {
+        Self { protected, outlier, max_valence, tolerance }
+    }
+
+    /// Of a level of so many vertices.
+    pub(crate) fn of_level(optimize: Optimize, num_vertices: usize, surface: &ShrinkingSurface) -> Self {
+        let num_finest = surface.surface.corner_of.len();
+        Self::of(optimize, num_vertices as f64 > FINE_SHARE * num_finest as f64)
+    }
+
+    /// Whether saliency counts.
+    pub(crate) fn protects(&self) -> bool {
+        self.protected > 0.0
+    }
+
+    /// How many of the vertices may go. The median is that of the `sample`.
+    fn num_free(&self, saliency: &[f64], mut sample: Vec<f64>) -> usize {
+        let part = |share: f64| ((1.0 - share) * saliency.len() as f64).ceil() as usize;
+        let most = part(self.protected);
+        let Some(outlier) = self.outlier else { return most };
+        let middle = sample.len() / 2;
+        let median = *sample.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let usual = saliency.iter().filter(|&&s| s <= outlier * median).count();
+        usual.clamp(part(MOST_OUTLIERS).min(most), most)
+    }
+
+    /// Most vertices come back in the finest levels: there the cost of coding counts, before that
+    /// the shape.
+    fn of(optimize: Optimize, is_fine: bool) -> Self {
+        match (optimize, is_fine) {
+            (Optimize::Size, _) => Self::new(0.0, None, 6, f64::INFINITY),
+            (Optimize::Balanced, true) => Self::new(0.1, None, 6, 8.0),
+            (Optimize::Balanced, false) => Self::new(0.2, Some(OUTLIER), 7, 2.0),
+            (Optimize::Prefix, _) => Self::new(0.2, Some(OUTLIER), 7, 1.0),
+        }
+    }
+}
+
+/// Levels with more than this share of all vertices are fine.
+const FINE_SHARE: f64 = 0.7;
+
+/// Up to so many vertices the descriptor is evaluated everywhere; of more, this many at least tell its ranks.
+const LARGE: usize = 8192;
+const SAMPLE: usize = 4096;
+/// Ranks and the bound of saliency are known that well from a sample.
+const SLACK: f64 = 1.1;
+/// The rank of the descriptor multiplies errors by this at most, and divides them by this at most.
+const WEIGHT: f64 = 2.0;
+
+/// Saliency of the vertices of a level, and how many of them may go.
+pub(crate) struct Saliency {
+    of: Vec<f64>,
+    num_free: usize,
+}
+
+impl Saliency {
+    /// All may go.
+    pub(crate) fn none(num_vertices: usize) -> Self {
+        Self { of: Vec::new(), num_free: num_vertices }
+    }
+
+    /// Errors alone.
+    pub(crate) fn of_errors(thinning: Thinning, errors: Vec<f64>) -> Self {
+        let num_free = thinning.num_free(&errors, errors.clone());
+        Self { of: errors, num_free }
+    }
+
+    /// Errors weighed by the rank of the descriptor. `evaluate` gives its values where it is told to, anything
+    /// elsewhere: on a large level that is a sample and the vertices about which the weight can decide.
+    pub(crate) fn weighed(
+        thinning: Thinning,
+        mut errors: Vec<f64>,
+        mut evaluate: impl FnMut(&[bool]) -> Vec<f64>,
+    ) -> Self {
+        let num_vertices = errors.len();
+        if num_vertices <= LARGE {
+            let scores = evaluate(&vec![true; num_vertices]);
+            for (rank, (_, place)) in sorted_keys(&scores).into_iter().enumerate() {
+                errors[place as usize] *= weight(rank as f64 / num_vertices as f64);
+            }
+            return Self::of_errors(thinning, errors);
+        }
+        let stride = (num_vertices / SAMPLE) as u32;
+        let is_sample = |place: usize| spread(place) < u32::MAX / stride;
+        let mut wanted: Vec<bool> = (0..num_vertices).map(is_sample).collect();
+        let scores = evaluate(&wanted);
+        let places: Vec<usize> = (0..num_vertices).filter(|&i| wanted[i]).collect();
+        let mut ranking: Vec<f64> = places.iter().map(|&i| scores[i]).collect();
+        ranking.sort_unstable_by(f64::total_cmp);
+        // In the middle of equal ones.
+        let weight_of = |score: f64| {
+            let ends = [ranking.partition_point(|&s| s < score), ranking.partition_point(|&s| s <= score)];
+            weight(0.5 * (ends[0] + ends[1]) as f64 / ranking.len() as f64)
+        };
+        places.iter().for_each(|&i| errors[i] *= weight_of(scores[i]));
+        let mut sample: Vec<f64> = places.iter().map(|&i| errors[i]).collect();
+        let num_free = thinning.num_free(&sample, sample.clone());
+        let last = sample.len() - 1;
+        let bound = *sample.select_nth_unstable_by(num_free.min(last), f64::total_cmp).1;
+
+        let (low, high) = (bound / (WEIGHT * SLACK), bound * (WEIGHT * SLACK));
+        for (i, wanted) in wanted.iter_mut().enumerate() {
+            *wanted = !*wanted && errors[i] > 0.0 && (low..=high).contains(&errors[i]);
+        }
+        let scores = evaluate(&wanted);
+        let weighed = errors.par_iter_mut().zip(&scores).zip(&wanted).filter(|(_, wanted)| **wanted);
+        weighed.for_each(|((error, &score), _)| *error *= weight_of(score));
+        let num_free = thinning.num_free(&errors, sample);
+        Self { of: errors, num_free }
+    }
+
+    /// The vertices that may go, in any order.
+    pub(crate) fn least(&self, vertices: &[u32]) -> Vec<u32> {
+        if self.num_free >= vertices.len() {
+            return vertices.to_vec();
+        }
+        let mut keys = score_keys(&self.of);
+        keys.select_nth_unstable(self.num_free);
+        keys[..self.num_free].iter().map(|&(_, place)| vertices[place as usize]).collect()
+    }
+}
+
+/// By the share of the vertices whose descriptor is less.
+fn weight(rank: f64) -> f64 {
+    (2.0 * rank - 1.0).exp2()
+}
+
+/// A number of 32 bits by which places anywhere are told apart evenly.
+fn spread(place: usize) -> u32 {
+    (place as u32).wrapping_mul(0x9e37_79b1)
+}
+
+fn sorted_keys(scores: &[f64]) -> Vec<(u64, u32)> {
+    let mut keys = score_keys(scores);
+    keys.par_sort_unstable();
+    keys
+}
+
+/// Scores as integers of the same order, each with its place.
+pub(crate) fn score_keys(scores: &[f64]) -> Vec<(u64, u32)> {
+    let key = |score: f64| {
+        // Adding 0 makes −0 equal to 0.
+        let bits = (score + 0.0).to_bits();
+        if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
+    };
+    scores.iter().zip(0..).map(|(&score, place)| (key(score), place)).collect()
+}
+
+/// Error of the best collapse of each vertex.
+pub(crate) fn errors(surface: &ShrinkingSurface, memory: &ErrorMemory, vertices: &[u32]) -> Vec<f64> {
+    const MIN_PARALLEL: usize = 2048;
+    let error = |star: &mut Star, &v: &u32| {
+        surface.read_star(v, star);
+        memory.least_error(star).0
+    };
+    vertices.par_iter().with_min_len(MIN_PARALLEL).map_init(Star::default, error).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn creases_stay_where_most_of_the_surface_is_flat() {
+        let thinning = Thinning::of(Optimize::Balanced, false);
+        let even: Vec<f64> = (0..100).map(|i| 1.0 + f64::from(i) / 100.0).collect();
+        assert_eq!(thinning.num_free(&even, even.clone()), 80);
+        let mut creased = vec![0.0; 70];
+        creased.resize(100, 1.0);
+        assert_eq!(thinning.num_free(&creased), 70);
+        creased.resize(1000, 1.0);
+        assert_eq!(thinning.num_free(&creased), 800);
+        let flat = Thinning::of(Optimize::Balanced, true);
+        assert_eq!(flat.num_free(&[0.0; 10]), 9);
+        assert_eq!(Thinning::of(Optimize::Prefix, true).num_free(&[0.0]), 1);
+    }
+}
