@@ -32,6 +32,8 @@ pub(crate) struct Settings {
     pub(crate) optimize: Optimize,
     /// The descriptor is left out where the partition can do without.
     pub(crate) is_hasty: bool,
+    /// Whether vertices that are near each other in space follow each other.
+    pub(crate) in_order: bool,
     /// Largest valence that goes, if not the usual one.
     pub(crate) max_valence: Option<u32>,
 }
@@ -81,6 +83,11 @@ impl<'a> Descent<'a> {
             depth,
             is_over,
         }
+    }
+
+    /// The same with another mean edge.
+    pub(crate) fn with_mean_edge(self, mean_edge: f64) -> Self {
+        Self { mean_edge, ..self }
     }
 
     /// The same with attributes that the descriptor sees, which must be one that can.
@@ -137,14 +144,14 @@ impl<'a> Descent<'a> {
 
     /// What the partition goes by.
     fn ranked(&mut self) -> Ranked {
-        let Settings { descriptor, window, partition, optimize, is_hasty, .. } = self.settings;
+        let Settings { descriptor, window, partition, optimize, is_hasty, in_order, .. } = self.settings;
         let (mean_edge, positions) = (self.mean_edge, self.geometry.positions);
         let vertices = &self.level.vertices;
         let features = || self.features.as_ref().map(|features| features.of_vertices(vertices));
         if partition == Partition::Algorithm1 {
             let features = features();
             let evaluate = |mesh: &TriMesh| {
-                Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge).everywhere()
+                Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge, in_order).everywhere()
             };
             return Ranked::ByScore(self.level.with_mesh(positions, evaluate));
         }
@@ -158,7 +165,8 @@ impl<'a> Descent<'a> {
         }
         let features = features();
         Ranked::BySaliency(self.level.with_mesh(positions, |mesh| {
-            let mut evaluation = Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge);
+            let mut evaluation =
+                Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge, in_order);
             Saliency::weighed(thinning, errors, |wanted| evaluation.at(wanted))
         }))
     }

@@ -288,11 +288,11 @@ fn closely_packed(surface: &ShrinkingSurface, free: &[u32]) -> Vec<u32> {
         queue.insert(class(v, Packing::default()), v);
     }
     let mut chosen = Vec::new();
-    let mut fresh = Vec::new();
+    let (mut fresh, mut changed) = (Vec::new(), Vec::new());
     while let Some(v) = queue.pop() {
         chosen.push(v);
         states[v as usize] = Packing::TOUCHED;
-        surface.for_each_neighbour(v, |u| {
+        surface.for_each_neighbour(v, |u, _| {
             let state = std::mem::replace(&mut states[u as usize], Packing::TOUCHED);
             if state.is_free() {
                 queue.remove(class(u, state), u);
@@ -302,14 +302,22 @@ fn closely_packed(surface: &ShrinkingSurface, free: &[u32]) -> Vec<u32> {
             }
         });
         for u in fresh.drain(..) {
-            surface.for_each_neighbour(u, |w| {
+            surface.for_each_neighbour(u, |w, _| {
                 let state = &mut states[w as usize];
                 if state.is_free() {
-                    queue.remove(class(w, *state), w);
+                    if state.0 & Packing::CHANGED == 0 {
+                        changed.push((w, *state));
+                        state.0 |= Packing::CHANGED;
+                    }
                     state.0 += 1;
-                    queue.insert(class(w, *state), w);
                 }
             });
+        }
+        for (w, before) in changed.drain(..) {
+            let state = &mut states[w as usize];
+            state.0 &= !Packing::CHANGED;
+            queue.remove(class(w, before), w);
+            queue.insert(class(w, *state), w);
         }
     }
     chosen
@@ -325,6 +333,8 @@ impl Packing {
     const STAYS: Self = Self(u8::MAX);
     /// It is removed or next to a removed vertex.
     const TOUCHED: Self = Self(u8::MAX - 1);
+    /// Added to the number until the queue knows of it.
+    const CHANGED: u8 = 1 << 6;
 
     fn is_free(self) -> bool {
         self.0 < Self::TOUCHED.0

@@ -2,8 +2,8 @@
 //! as much by the rank of the descriptor.
 
 use crate::partition::Optimize;
+use crate::simplify::ShrinkingSurface;
 use crate::simplify::memory::ErrorMemory;
-use crate::simplify::{ShrinkingSurface, Star};
 use rayon::prelude::*;
 
 /// How a level is thinned out.
@@ -177,11 +177,8 @@ pub(crate) fn score_keys(scores: &[f64]) -> Vec<(u64, u32)> {
 /// Error of the best collapse of each vertex.
 pub(crate) fn errors(surface: &ShrinkingSurface, memory: &ErrorMemory, vertices: &[u32]) -> Vec<f64> {
     const MIN_PARALLEL: usize = 2048;
-    let error = |star: &mut Star, &v: &u32| {
-        surface.read_star(v, star);
-        memory.least_error(star).0
-    };
-    vertices.par_iter().with_min_len(MIN_PARALLEL).map_init(Star::default, error).collect()
+    let error = |&v: &u32| memory.error_at(surface, v);
+    vertices.par_iter().with_min_len(MIN_PARALLEL).map(error).collect()
 }
 
 #[cfg(test)]

@@ -160,7 +160,7 @@ pub fn evaluate_reading(
     readings: Readings,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Vec<f64> {
-    let surface = prepare(mesh, window, mean_edge, readings.normals);
+    let surface = prepare(mesh, window, mean_edge, readings.normals, false);
     evaluate_prepared(mesh, surface.as_ref(), progress, |surface| {
         evaluate_surface(descriptor, surface, window, readings, progress)
     })
@@ -196,15 +196,17 @@ pub(crate) struct Evaluation<'a> {
 }
 
 impl<'a> Evaluation<'a> {
-    /// `features` count only if the descriptor knows attributes.
+    /// `features` count only if the descriptor knows attributes. Vertices `in_order` are near each other in memory if
+    /// they are so in space.
     pub(crate) fn new(
         descriptor: Descriptor,
         mesh: &'a TriMesh,
         features: Option<&'a Features>,
         window: Window,
         mean_edge: f64,
+        in_order: bool,
     ) -> Self {
-        let surface = prepare(mesh, &window, mean_edge, NormalWeights::default());
+        let surface = prepare(mesh, &window, mean_edge, NormalWeights::default(), in_order);
         let features = features.filter(|_| descriptor.knows_attributes());
         Self { descriptor, mesh, features, window, surface, values: None }
     }
@@ -259,16 +261,22 @@ pub fn evaluate_with_features(
         Descriptor::PcaQem => augmented::pca_qem,
         _ => return Err(FeaturesError::Descriptor { descriptor }),
     };
-    let prepared = prepare(mesh, window, mean_edge, NormalWeights::default());
+    let prepared = prepare(mesh, window, mean_edge, NormalWeights::default(), false);
     Ok(evaluate_prepared(mesh, prepared.as_ref(), progress, |surface| {
         evaluate(surface, features, window, progress)
     }))
 }
 
 /// `None` where every value is 0.
-fn prepare(mesh: &TriMesh, window: &Window, mean_edge: f64, normals: NormalWeights) -> Option<Surface> {
+fn prepare(
+    mesh: &TriMesh,
+    window: &Window,
+    mean_edge: f64,
+    normals: NormalWeights,
+    in_order: bool,
+) -> Option<Surface> {
     let usable = window.radius > 0.0 && mean_edge > 0.0 && mean_edge.is_finite();
-    usable.then(|| Surface::new(mesh, mean_edge, normals)).flatten()
+    usable.then(|| Surface::new(mesh, mean_edge, normals, in_order)).flatten()
 }
 
 fn evaluate_prepared(
@@ -293,7 +301,7 @@ fn evaluate_prepared(
 ///
 /// `window` and `mean_edge` as in [`evaluate`]; 0 where that gives zeros. Runs on the current rayon pool.
 pub fn mean_window_size(mesh: &TriMesh, window: &Window, mean_edge: f64) -> f64 {
-    let Some(surface) = prepare(mesh, window, mean_edge, NormalWeights::default()) else {
+    let Some(surface) = prepare(mesh, window, mean_edge, NormalWeights::default(), false) else {
         return 0.0;
     };
     let sizes = window::map_windows(&surface, window, &|_| (), |local| local.len());

@@ -36,7 +36,14 @@ pub(super) struct Surface {
 
 impl Surface {
     /// `None` if l̄ vanishes beside the coordinates, or there are no edges.
-    pub(super) fn new(mesh: &TriMesh, mean_edge: f64, normals: NormalWeights) -> Option<Self> {
+    ///
+    /// Vertices keep their order if they are `in_order`: those near each other in memory are so in space.
+    pub(super) fn new(
+        mesh: &TriMesh,
+        mean_edge: f64,
+        normals: NormalWeights,
+        in_order: bool,
+    ) -> Option<Self> {
         let mut triangles = proper_triangles(mesh);
         let (low, high) = bounding_box(mesh, &triangles)?;
         // l̄ goes to [1, 2), less if coordinates would overflow. Differences may still become infinite
@@ -49,7 +56,11 @@ impl Surface {
         }
 
         let positions = scaled_positions(mesh, shift);
-        let mesh_vertices = morton_order(&positions, scaled(low, shift), scaled(high, shift));
+        let mesh_vertices = if in_order {
+            (0..positions.len() as u32).collect()
+        } else {
+            morton_order(&positions, scaled(low, shift), scaled(high, shift))
+        };
         let mut surface_vertices = vec![0; mesh_vertices.len()];
         for (i, &v) in mesh_vertices.iter().enumerate() {
             surface_vertices[v as usize] = i as u32;

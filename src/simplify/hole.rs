@@ -149,7 +149,12 @@ impl HoleFiller {
         let clipped = self.clipper.clip(surface, star, grid, demand);
         match (clipped, target) {
             (Some(ears), None) => Some(ears),
-            (Some(ears), _) if self.deviation.of(ears.iter().copied(), bound) <= bound => Some(ears),
+            (Some(ears), Some(target))
+                if is_fan(ears, target, star.degree())
+                    || self.deviation.of(ears.iter().copied(), bound) <= bound =>
+            {
+                Some(ears)
+            }
             (_, Some(target)) => {
                 self.ears.clear();
                 self.ears.extend(fan(target, star.degree()));
@@ -163,6 +168,20 @@ impl HoleFiller {
 /// The ears whose cutting leaves the fan around a ring vertex.
 fn fan(target: usize, degree: usize) -> impl Iterator<Item = usize> {
     (1..degree - 1).map(move |i| (target + i) % degree)
+}
+
+/// Whether cutting `ears` leaves the fan around `target`: all but the last one cut a diagonal to it.
+fn is_fan(ears: &[usize], target: usize, degree: usize) -> bool {
+    // The places between the target and the diagonals so far.
+    let (mut after, mut before) = (1, degree - 1);
+    ears[..ears.len() - 1].iter().all(|&ear| {
+        let place = if ear >= target { ear - target } else { ear + degree - target };
+        let is_next = place == after;
+        let is_last = place == before;
+        after += usize::from(is_next);
+        before -= usize::from(is_last);
+        is_next || is_last
+    })
 }
 
 #[cfg(test)]

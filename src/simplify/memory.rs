@@ -2,7 +2,7 @@
 //! on from each removed vertex to a neighbour (Garland and Heckbert; section 5.1 of the paper names
 //! the property). So errors are measured against M^L, not against the level before.
 
-use super::Star;
+use super::{ShrinkingSurface, Star};
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use glam::DVec3;
@@ -93,6 +93,18 @@ impl<'a> ErrorMemory<'a> {
         } else {
             [star.ring.first(), star.ring.last()].into_iter().flatten().map(error).fold(start, less)
         }
+    }
+
+    /// The error of [`least_error`](Self::least_error) at a vertex of `surface`.
+    pub(crate) fn error_at(&self, surface: &ShrinkingSurface, vertex: u32) -> f64 {
+        let quadric = &self.quadrics[vertex as usize];
+        let (mut of_all, mut of_ends) = (f64::INFINITY, f64::INFINITY);
+        let is_closed = surface.for_each_neighbour(vertex, |u, is_end| {
+            let error = quadric.at(self.way(vertex, u));
+            let least = if is_end { &mut of_ends } else { &mut of_all };
+            *least = if error < *least { error } else { *least };
+        });
+        if is_closed { of_all } else { of_ends }
     }
 
     /// The star's vertex goes: the neighbour where that costs least remembers it.

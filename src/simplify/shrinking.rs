@@ -81,28 +81,33 @@ impl ShrinkingSurface {
         }
     }
 
-    /// Calls `see` with each neighbour, in any order.
+    /// Calls `see` with each neighbour, in any order, and whether it is an end of the ring. Returns whether there
+    /// are no ends.
     #[inline]
-    pub(crate) fn for_each_neighbour(&self, vertex: u32, mut see: impl FnMut(u32)) {
+    pub(crate) fn for_each_neighbour(&self, vertex: u32, mut see: impl FnMut(u32, bool)) -> bool {
         let s = &self.surface;
         let start = s.corner_of[vertex as usize];
         let mut corner = start;
         loop {
-            see(s.vertex(next(corner)));
             let left = s.swing_left(corner);
-            if left == start {
-                return;
-            }
             if left == NO_CORNER {
+                see(s.vertex(prev(corner)), true);
                 break;
+            }
+            see(s.vertex(prev(corner)), false);
+            if left == start {
+                return true;
             }
             corner = left;
         }
-        see(s.vertex(prev(corner)));
-        let mut corner = s.swing_right(start);
-        while corner != NO_CORNER {
-            see(s.vertex(next(corner)));
-            corner = s.swing_right(corner);
+        let mut corner = start;
+        loop {
+            let right = s.swing_right(corner);
+            see(s.vertex(next(corner)), right == NO_CORNER);
+            if right == NO_CORNER {
+                return false;
+            }
+            corner = right;
         }
     }
 
