@@ -104,7 +104,7 @@ pub(crate) fn remove_level(
             free.retain(|&v| valence(v) <= max_valence && !anchors.contain(v));
             leave_seams(optimize, surface, seams, vertices.len(), &mut free);
             let chosen = closely_packed(surface, &free);
-            remove_as_decoded(surface, geometry, &chosen, thinning.tolerance, memory, anchors, seams)
+            remove_as_decoded(surface, geometry, chosen, thinning.tolerance, memory, anchors, seams)
         }
     }
 }
@@ -150,53 +150,50 @@ pub(crate) fn remove_in_order(
     record
 }
 
-/// Vertices that are looked at together before they are removed, and how many of them by one thread.
-const BLOCK: usize = 1 << 16;
-const GROUP: usize = 1 << 8;
-
 /// Removes the vertices of `chosen`, none next to another, in the reverse of the order in which a decoder
 /// brings them back: the ears of the boundary last. Those that cannot go stay, which costs some bits where
 /// the order then differs.
 fn remove_as_decoded(
     surface: &mut ShrinkingSurface,
     geometry: Geometry,
-    chosen: &[u32],
+    mut chosen: Vec<u32>,
     tolerance: f64,
     memory: &mut ErrorMemory,
     anchors: &Anchors,
     seams: &mut Seams,
 ) -> LevelRecord {
+    let Geometry { grid, positions } = geometry;
+    let see_fans = tolerance < f64::INFINITY && seams.is_empty();
     let mut odd: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     chosen.iter().for_each(|&v| odd.set(v as usize, true));
-    let order = patch_order(surface, &odd, anchors);
+    chosen.sort_unstable();
+    let (order, outlook) = rayon::join(
+        || patch_order(surface, &odd, anchors),
+        || Outlook::new(surface, grid, positions, memory, &chosen, see_fans),
+    );
     let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;
     let (ears, patches): (Vec<u32>, Vec<u32>) = order.into_iter().rev().partition(is_ear);
-    let order: Vec<u32> = patches.into_iter().chain(ears).collect();
-    let Geometry { grid, positions } = geometry;
     let mut record = LevelRecord::default();
     let mut star = Star::default();
     let mut filler = HoleFiller::default();
-    let see_fans = tolerance < f64::INFINITY && seams.is_empty();
-    for block in order.chunks(BLOCK) {
-        let groups: Vec<Outlook> = (block.par_chunks(GROUP))
-            .map(|corners| Outlook::new(surface, grid, positions, memory, corners, see_fans))
-            .collect();
-        for ahead in groups.iter().flat_map(Outlook::iter) {
-            ahead.star(&mut star);
-            let demand = demand_that_is_met(seams, surface, geometry, &star, tolerance, &mut filler);
-            let filled = match demand {
-                Demand::Stay => continue,
-                Demand::None => {
-                    filler.fill_as_foreseen(surface, &star, grid, positions, tolerance, ahead.prospect)
-                }
-                _ => filler.fill(surface, &star, grid, positions, tolerance, demand),
-            };
-            let Some(ears) = filled else { continue };
-            memory.hand_on_to(star.vertex, ahead.heir);
-            let faces = surface.remove(&star, ears);
-            record.push(star.vertex, &star.ring, faces);
-            seams.remove(&star, ears, &mut record);
+    for corner in patches.into_iter().chain(ears) {
+        let ahead = outlook.read(surface.surface.vertex(corner), corner, &mut star);
+        let demand = demand_that_is_met(seams, surface, geometry, &star, tolerance, &mut filler);
+        let filled = match demand {
+            Demand::Stay => continue,
+            Demand::None => {
+                filler.fill_as_foreseen(surface, &star, grid, positions, tolerance, ahead.prospect)
+            }
+            _ => filler.fill(surface, &star, grid, positions, tolerance, demand),
+        };
+        let Some(ears) = filled else { continue };
+        match ahead.heir {
+            Some(heir) => memory.hand_on_to(star.vertex, heir),
+            None => memory.hand_on(&star),
         }
+        let faces = surface.remove(&star, ears);
+        record.push(star.vertex, &star.ring, faces);
+        seams.remove(&star, ears, &mut record);
     }
     record.shrink_to_fit();
     record

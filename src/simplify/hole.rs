@@ -19,11 +19,40 @@ const SMALL: f64 = 4e-4;
 /// What does not depend on which vertices went before, as long as the star's own did not: the fans.
 #[derive(Clone, Copy)]
 pub(crate) struct Prospect {
-    /// The best half-edge collapse that keeps every face on its side, and its deviation.
-    target: u32,
+    /// The best half-edge collapses that keep every face on its side, as places in the ring, and their deviation.
+    targets: Places,
     deviation: f64,
     /// Whether it deviates too much, so that the vertex stays.
     is_unfit: bool,
+}
+
+impl Prospect {
+    /// The same of a ring of so many vertices that begins `shift` places later.
+    pub(super) fn turned(self, shift: usize, degree: usize) -> Self {
+        Self { targets: self.targets.turned(shift, degree), ..self }
+    }
+}
+
+/// Places in a ring of up to 64 vertices.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Places(u64);
+
+impl Places {
+    pub(super) const MOST: usize = 64;
+
+    pub(super) fn insert(&mut self, place: usize) {
+        self.0 |= 1 << place;
+    }
+
+    /// The same of a ring of so many vertices that begins `shift` places later.
+    pub(super) fn turned(self, shift: usize, degree: usize) -> Self {
+        let all = u64::MAX >> (Self::MOST - degree);
+        Self((self.0 >> shift | self.0 << (degree - shift)) & all)
+    }
+
+    pub(super) fn first(self) -> usize {
+        self.0.trailing_zeros() as usize
+    }
 }
 
 /// Scratch space of the choice.
@@ -62,7 +91,7 @@ impl HoleFiller {
             demand == Demand::None || fan(i, degree).all(|ear| demand.allows([i, ear, (ear + 1) % degree]))
         };
         let is_legal = |i: usize| is_legal(surface, star, i, grid);
-        let (best, is_unfit) = self.best_fan(star, 0, may_fan, is_legal);
+        let (best, is_unfit) = self.best_fan(star, 0, may_fan, is_legal, |_, _| ());
         if is_unfit {
             return None;
         }
@@ -77,14 +106,26 @@ impl HoleFiller {
         positions: &[[f64; 3]],
         first: usize,
     ) -> Option<Prospect> {
-        if star.degree() < 3 {
+        if !(3..=Places::MOST).contains(&star.degree()) {
             return None;
         }
         self.deviation.set(star, positions);
-        let ((deviation, target), is_unfit) =
-            self.best_fan(star, first, |_| true, |i| keeps_sides(star, i, grid));
-        let target = if is_unfit { 0 } else { target? as u32 };
-        Some(Prospect { target, deviation, is_unfit })
+        let mut targets = Places::default();
+        let mut deviation = f64::INFINITY;
+        let is_legal = |i: usize| keeps_sides(star, i, grid);
+        let (best, is_unfit) = self.best_fan(
+            star,
+            first,
+            |_| true,
+            is_legal,
+            |i, of_fan| {
+                if of_fan < deviation {
+                    (targets, deviation) = (Places::default(), of_fan);
+                }
+                targets.insert(i);
+            },
+        );
+        (best.1.is_some() || is_unfit).then_some(Prospect { targets, deviation, is_unfit })
     }
 
     /// The same as [`fill`](Self::fill) with no demand, if all that was foreseen comes true.
@@ -97,27 +138,29 @@ impl HoleFiller {
         tolerance: f64,
         prospect: Option<Prospect>,
     ) -> Option<&[usize]> {
-        let Some(Prospect { target, deviation, is_unfit }) = prospect else {
+        let Some(Prospect { targets, deviation, is_unfit }) = prospect else {
             return self.fill(surface, star, grid, positions, tolerance, Demand::None);
         };
         if is_unfit {
             return None;
         }
-        if !makes_new_edges(surface, star, target as usize) {
+        let target = targets.first();
+        if !makes_new_edges(surface, star, target) {
             return self.fill(surface, star, grid, positions, tolerance, Demand::None);
         }
         self.deviation.set(star, positions);
-        self.choose(surface, star, grid, tolerance, Demand::None, (deviation, Some(target as usize)))
+        self.choose(surface, star, grid, tolerance, Demand::None, (deviation, Some(target)))
     }
 
     /// The legal fan that deviates least, the first one of several, and whether that is much more than the
-    /// least of all.
+    /// least of all. `see` is told of each legal one that does not deviate more than those before.
     fn best_fan(
         &mut self,
         star: &Star,
         first: usize,
         may_fan: impl Fn(usize) -> bool,
         is_legal: impl Fn(usize) -> bool,
+        mut see: impl FnMut(usize, f64),
     ) -> ((f64, Option<usize>), bool) {
         let degree = star.degree();
         let mut best = (f64::INFINITY, None);
@@ -127,9 +170,12 @@ impl HoleFiller {
         for target in std::iter::once(first).chain(others).filter(is_target) {
             let deviation = self.deviation.of_fan(target, best.0);
             least = least.min(deviation);
-            let is_better = deviation < best.0 || deviation == best.0 && best.1.is_some_and(|b| target < b);
-            if is_better && is_legal(target) {
-                best = (deviation, Some(target));
+            if deviation <= best.0 && is_legal(target) {
+                see(target, deviation);
+                let is_first = best.1.is_none_or(|best| target < best);
+                if deviation < best.0 || is_first {
+                    best = (deviation, Some(target));
+                }
             }
         }
         (best, best.0 > UNFIT * (least + SMALL * self.deviation.extent()))

@@ -81,18 +81,27 @@ impl<'a> ErrorMemory<'a> {
         Self { positions, quadrics, area }
     }
 
-    /// The neighbour into which the star's vertex collapses with the least error, and that error:
-    /// area times squared distance. At a boundary only the ends of the ring count.
+    /// The neighbour into which the star's vertex collapses with the least error, the first one of several, and that
+    /// error: area times squared distance. At a boundary only the ends of the ring count.
     pub(crate) fn least_error(&self, star: &Star) -> (f64, u32) {
+        self.heir(star).0
+    }
+
+    /// The same, and whether there is just one such neighbour.
+    pub(crate) fn heir(&self, star: &Star) -> ((f64, u32), bool) {
         let quadric = &self.quadrics[star.vertex as usize];
-        let error = |&u: &u32| (quadric.at(self.way(star.vertex, u)), u);
-        let less = |best: (f64, u32), other: (f64, u32)| if other.0 < best.0 { other } else { best };
-        let start = (f64::INFINITY, star.vertex);
-        if star.is_closed() {
-            star.ring.iter().map(error).fold(start, less)
-        } else {
-            [star.ring.first(), star.ring.last()].into_iter().flatten().map(error).fold(start, less)
+        let mut least = (f64::INFINITY, star.vertex);
+        let mut is_sole = false;
+        let step = if star.is_closed() { 1 } else { (star.degree() - 1).max(1) };
+        for &u in star.ring.iter().step_by(step) {
+            let error = quadric.at(self.way(star.vertex, u));
+            if error < least.0 {
+                (least, is_sole) = ((error, u), true);
+            } else if error == least.0 {
+                is_sole = false;
+            }
         }
+        (least, is_sole)
     }
 
     /// The error of [`least_error`](Self::least_error) at a vertex of `surface`.
