@@ -7,8 +7,8 @@ use crate::mesh::Surface;
 use crate::partition::{Geometry, Optimize, Partition, Ranked, is_coarse, remove_level};
 use crate::simplify::canonical::Anchors;
 use crate::simplify::memory::ErrorMemory;
-use crate::simplify::{LevelRecord, Seams, ShrinkingSurface};
-use crate::thinning::{self, Saliency, Thinning};
+use crate::simplify::{LevelRecord, Rings, Seams, ShrinkingSurface};
+use crate::thinning::{Saliency, Thinning};
 use bitvec::vec::BitVec;
 
 /// Most levels, whatever the wish.
@@ -143,7 +143,7 @@ impl<'a> Descent<'a> {
     }
 
     /// What the partition goes by.
-    fn ranked(&mut self) -> Ranked {
+    fn ranked(&mut self, rings: &Rings) -> Ranked {
         let Settings { descriptor, window, partition, optimize, is_hasty, in_order, .. } = self.settings;
         let (mean_edge, positions) = (self.mean_edge, self.geometry.positions);
         let vertices = &self.level.vertices;
@@ -159,14 +159,16 @@ impl<'a> Descent<'a> {
         if !thinning.protects() {
             return Ranked::BySaliency(Saliency::none(vertices.len()));
         }
-        let errors = thinning::errors(&self.shrinking, &self.memory, vertices);
         if is_hasty {
+            let errors = self.memory.errors(rings, vertices);
             return Ranked::BySaliency(Saliency::of_errors(thinning, errors));
         }
-        let features = features();
+        let (features, memory, vertices) = (features(), &self.memory, vertices.clone());
         Ranked::BySaliency(self.level.with_mesh(positions, |mesh| {
-            let mut evaluation =
-                Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge, in_order);
+            let (mut evaluation, errors) = rayon::join(
+                || Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge, in_order),
+                || memory.errors(rings, &vertices),
+            );
             Saliency::weighed(thinning, errors, |wanted| evaluation.at(wanted))
         }))
     }
@@ -180,7 +182,13 @@ impl Iterator for Descent<'_> {
             return None;
         }
         let optimize = self.settings.optimize;
-        let ranked = self.ranked();
+        let is_balanced = self.settings.partition == Partition::Balanced;
+        let rings =
+            if is_balanced { Rings::new(&self.shrinking, &self.level.vertices) } else { Rings::default() };
+        if is_balanced {
+            self.shrinking.forget(&rings, &self.level.vertices);
+        }
+        let ranked = self.ranked(&rings);
         let record = remove_level(
             self.settings.optimize,
             self.settings.max_valence,
@@ -190,6 +198,7 @@ impl Iterator for Descent<'_> {
             &self.anchors,
             &mut self.seams,
             &self.level.vertices,
+            &rings,
             ranked,
         );
         if record.len() == 0 {

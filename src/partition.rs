@@ -8,7 +8,7 @@ use crate::simplify::memory::ErrorMemory;
 use crate::simplify::outlook::Outlook;
 use crate::simplify::packing::{ClassQueue, PackingClasses};
 use crate::simplify::seams::{Demand, may_go};
-use crate::simplify::{LevelRecord, Seams, ShrinkingSurface, Star};
+use crate::simplify::{LevelRecord, Rings, Seams, ShrinkingSurface, Star};
 use crate::thinning::{Saliency, Thinning, score_keys};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
@@ -88,6 +88,7 @@ pub(crate) fn remove_level(
     anchors: &Anchors,
     seams: &mut Seams,
     vertices: &[u32],
+    rings: &Rings,
     ranked: Ranked,
 ) -> LevelRecord {
     match ranked {
@@ -99,11 +100,13 @@ pub(crate) fn remove_level(
         Ranked::BySaliency(saliency) => {
             let thinning = Thinning::of_level(optimize, vertices.len(), surface);
             let max_valence = max_valence.unwrap_or(thinning.max_valence);
-            let valence = |v: u32| surface.surface.valence[v as usize];
-            let mut free = saliency.least(vertices);
-            free.retain(|&v| valence(v) <= max_valence && !anchors.contain(v));
-            leave_seams(optimize, surface, seams, vertices.len(), &mut free);
-            let chosen = closely_packed(surface, &free);
+            let mut free = saliency.least();
+            free.retain(|&place| {
+                rings.valence(place) <= max_valence as usize && !anchors.contain(vertices[place as usize])
+            });
+            leave_seams(optimize, surface, seams, vertices, &mut free);
+            let chosen = closely_packed(rings, &free).into_iter().map(|place| vertices[place as usize]);
+            let chosen = chosen.collect();
             remove_as_decoded(surface, geometry, chosen, thinning.tolerance, memory, anchors, seams)
         }
     }
@@ -248,7 +251,7 @@ fn leave_seams(
     optimize: Optimize,
     surface: &ShrinkingSurface,
     seams: &mut Seams,
-    num_vertices: usize,
+    vertices: &[u32],
     free: &mut Vec<u32>,
 ) {
     /// Share of the vertices that could go otherwise.
@@ -257,29 +260,26 @@ fn leave_seams(
         return;
     }
     let mut star = Star::default();
-    let kept: Vec<u32> = free.iter().copied().filter(|&v| may_go(seams, surface, v, &mut star)).collect();
-    if is_coarse(optimize, num_vertices, surface) || kept.len() as f64 >= LEAST_FREE * free.len() as f64 {
+    let mut may_go = |&place: &u32| may_go(seams, surface, vertices[place as usize], &mut star);
+    let kept: Vec<u32> = free.iter().copied().filter(|place| may_go(place)).collect();
+    if is_coarse(optimize, vertices.len(), surface) || kept.len() as f64 >= LEAST_FREE * free.len() as f64 {
         *free = kept;
     } else {
         seams.loosen();
-        leave_seams(optimize, surface, seams, num_vertices, free);
+        leave_seams(optimize, surface, seams, vertices, free);
     }
 }
 
 /// Those of `free` that go one after the other if each rules out its neighbours, the ones first whose
 /// valence less some of the share of their neighbours that are next to a removed vertex already is least,
 /// ties by index.
-fn closely_packed(surface: &ShrinkingSurface, free: &[u32]) -> Vec<u32> {
-    let surface_of = &surface.surface;
-    let num_slots = surface_of.corner_of.len();
-    let largest = free.iter().map(|&v| surface_of.valence[v as usize]).max().unwrap_or(0);
-    let classes = PackingClasses::new(largest as usize);
+fn closely_packed(rings: &Rings, free: &[u32]) -> Vec<u32> {
+    let largest = free.iter().map(|&v| rings.valence(v)).max().unwrap_or(0);
+    let classes = PackingClasses::new(largest);
     // Of each free vertex how many of its neighbours are next to a removed vertex.
-    let mut states = vec![Packing::STAYS; num_slots];
-    let class = |v: u32, Packing(touched): Packing| {
-        classes.of(surface_of.valence[v as usize] as usize, usize::from(touched))
-    };
-    let mut queue = ClassQueue::new(classes.count, num_slots);
+    let mut states = vec![Packing::STAYS; rings.len()];
+    let class = |v: u32, Packing(touched): Packing| classes.of(rings.valence(v), usize::from(touched));
+    let mut queue = ClassQueue::new(classes.count, rings.len());
     for &v in free {
         states[v as usize] = Packing::default();
         queue.insert(class(v, Packing::default()), v);
@@ -289,7 +289,7 @@ fn closely_packed(surface: &ShrinkingSurface, free: &[u32]) -> Vec<u32> {
     while let Some(v) = queue.pop() {
         chosen.push(v);
         states[v as usize] = Packing::TOUCHED;
-        surface.for_each_neighbour(v, |u, _| {
+        for &u in rings.of(v) {
             let state = std::mem::replace(&mut states[u as usize], Packing::TOUCHED);
             if state.is_free() {
                 queue.remove(class(u, state), u);
@@ -297,19 +297,18 @@ fn closely_packed(surface: &ShrinkingSurface, free: &[u32]) -> Vec<u32> {
             if state != Packing::TOUCHED {
                 fresh.push(u);
             }
-        });
-        for u in fresh.drain(..) {
-            surface.for_each_neighbour(u, |w, _| {
-                let state = &mut states[w as usize];
-                if state.is_free() {
-                    if state.0 & Packing::CHANGED == 0 {
-                        changed.push((w, *state));
-                        state.0 |= Packing::CHANGED;
-                    }
-                    state.0 += 1;
-                }
-            });
         }
+        for &w in fresh.iter().flat_map(|&u| rings.of(u)) {
+            let state = &mut states[w as usize];
+            if state.is_free() {
+                if state.0 & Packing::CHANGED == 0 {
+                    changed.push((w, *state));
+                    state.0 |= Packing::CHANGED;
+                }
+                state.0 += 1;
+            }
+        }
+        fresh.clear();
         for (w, before) in changed.drain(..) {
             let state = &mut states[w as usize];
             state.0 &= !Packing::CHANGED;

@@ -3,7 +3,6 @@
 
 use crate::partition::Optimize;
 use crate::simplify::ShrinkingSurface;
-use crate::simplify::memory::ErrorMemory;
 use rayon::prelude::*;
 
 /// How a level is thinned out.
@@ -137,14 +136,14 @@ impl Saliency {
         Self { of: errors, num_free }
     }
 
-    /// The vertices that may go, in any order.
-    pub(crate) fn least(&self, vertices: &[u32]) -> Vec<u32> {
-        if self.num_free >= vertices.len() {
-            return vertices.to_vec();
+    /// The vertices that may go, as places in any order.
+    pub(crate) fn least(&self) -> Vec<u32> {
+        if self.num_free >= self.of.len() {
+            return (0..self.num_free as u32).collect();
         }
         let mut keys = score_keys(&self.of);
         keys.select_nth_unstable(self.num_free);
-        keys[..self.num_free].iter().map(|&(_, place)| vertices[place as usize]).collect()
+        keys[..self.num_free].iter().map(|&(_, place)| place).collect()
     }
 }
 
@@ -172,13 +171,6 @@ pub(crate) fn score_keys(scores: &[f64]) -> Vec<(u64, u32)> {
         if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
     };
     scores.iter().zip(0..).map(|(&score, place)| (key(score), place)).collect()
-}
-
-/// Error of the best collapse of each vertex.
-pub(crate) fn errors(surface: &ShrinkingSurface, memory: &ErrorMemory, vertices: &[u32]) -> Vec<f64> {
-    const MIN_PARALLEL: usize = 2048;
-    let error = |&v: &u32| memory.error_at(surface, v);
-    vertices.par_iter().with_min_len(MIN_PARALLEL).map(error).collect()
 }
 
 #[cfg(test)]

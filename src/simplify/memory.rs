@@ -2,10 +2,11 @@
 //! on from each removed vertex to a neighbour (Garland and Heckbert; section 5.1 of the paper names
 //! the property). So errors are measured against M^L, not against the level before.
 
-use super::{ShrinkingSurface, Star};
+use super::{Rings, Star};
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Squared distance from a set of planes, weighed by area, as a function of the way `d` from the
 /// vertex it belongs to: dᵀ A d + 2 bᵀ d + c. A is symmetric: its columns down to the diagonal.
@@ -104,16 +105,16 @@ impl<'a> ErrorMemory<'a> {
         (least, is_sole)
     }
 
-    /// The error of [`least_error`](Self::least_error) at a vertex of `surface`.
-    pub(crate) fn error_at(&self, surface: &ShrinkingSurface, vertex: u32) -> f64 {
-        let quadric = &self.quadrics[vertex as usize];
-        let (mut of_all, mut of_ends) = (f64::INFINITY, f64::INFINITY);
-        let is_closed = surface.for_each_neighbour(vertex, |u, is_end| {
-            let error = quadric.at(self.way(vertex, u));
-            let least = if is_end { &mut of_ends } else { &mut of_all };
-            *least = if error < *least { error } else { *least };
-        });
-        if is_closed { of_all } else { of_ends }
+    /// The error of [`least_error`](Self::least_error) at each of `vertices`, whose rings these are.
+    pub(crate) fn errors(&self, rings: &Rings, vertices: &[u32]) -> Vec<f64> {
+        const MIN_PARALLEL: usize = 2048;
+        let error = |(&v, place): (&u32, u32)| {
+            let quadric = &self.quadrics[v as usize];
+            let errors = rings.targets(place).iter().map(|&u| quadric.at(self.way(v, vertices[u as usize])));
+            errors.fold(f64::INFINITY, |least, error| if error < least { error } else { least })
+        };
+        let places = (0..vertices.len() as u32).into_par_iter();
+        vertices.par_iter().zip(places).with_min_len(MIN_PARALLEL).map(error).collect()
     }
 
     /// The star's vertex goes: the neighbour where that costs least remembers it.

@@ -1,5 +1,6 @@
 //! A surface from which vertices are taken, one star at a time.
 
+use super::Rings;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 
@@ -31,6 +32,8 @@ pub(crate) struct ShrinkingSurface {
     pub(crate) surface: Surface,
     num_vertices: usize,
     num_faces: usize,
+    /// Of each vertex the bits of all neighbours that it has or had: who is not among them is none.
+    acquaintances: Vec<u32>,
     /// Scratch: neighbours of the polygon corners and the corner across each polygon edge.
     after: Vec<usize>,
     before: Vec<usize>,
@@ -38,9 +41,22 @@ pub(crate) struct ShrinkingSurface {
     slots: Vec<u32>,
 }
 
+/// One of 32 bits that tell most vertices apart.
+#[inline]
+fn bit(vertex: u32) -> u32 {
+    1 << (vertex.wrapping_mul(0x9e37_79b1) >> 27)
+}
+
 impl ShrinkingSurface {
     pub(crate) fn new(surface: Surface) -> Self {
+        let mut acquaintances = vec![0; surface.corner_of.len()];
+        for &[a, b, c] in &surface.triangles {
+            acquaintances[a as usize] |= bit(b) | bit(c);
+            acquaintances[b as usize] |= bit(c) | bit(a);
+            acquaintances[c as usize] |= bit(a) | bit(b);
+        }
         Self {
+            acquaintances,
             num_vertices: surface.corner_of.len(),
             num_faces: surface.triangles.len(),
             surface,
@@ -48,6 +64,14 @@ impl ShrinkingSurface {
             before: Vec::new(),
             outer: Vec::new(),
             slots: Vec::new(),
+        }
+    }
+
+    /// Forgets the neighbours that were; `rings` are those of all vertices.
+    pub(crate) fn forget(&mut self, rings: &Rings, vertices: &[u32]) {
+        for (&v, place) in vertices.iter().zip(0..) {
+            let bits = rings.of(place).iter().map(|&u| bit(vertices[u as usize]));
+            self.acquaintances[v as usize] = bits.fold(0, |all, bit| all | bit);
         }
     }
 
@@ -113,6 +137,9 @@ impl ShrinkingSurface {
 
     /// True if an edge joins the two vertices.
     pub(crate) fn has_edge(&self, a: u32, b: u32) -> bool {
+        if self.acquaintances[a as usize] & bit(b) == 0 || self.acquaintances[b as usize] & bit(a) == 0 {
+            return false;
+        }
         let s = &self.surface;
         let (from, to) = if s.valence[a as usize] <= s.valence[b as usize] { (a, b) } else { (b, a) };
         let start = s.corner_of[from as usize];
@@ -180,8 +207,9 @@ impl ShrinkingSurface {
             if k + 1 == ears.len() {
                 surface.link(base + 1, self.outer[n]);
             } else {
-                for i in [p, n] {
+                for (i, j) in [(p, n), (n, p)] {
                     surface.valence[star.ring[i] as usize] += 1;
+                    self.acquaintances[star.ring[i] as usize] |= bit(star.ring[j]);
                 }
                 self.outer[p] = base + 1;
                 self.after[p] = n;
