@@ -169,7 +169,7 @@ impl<'a> Descent<'a> {
                 || Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge, in_order),
                 || memory.errors(rings, &vertices),
             );
-            Saliency::weighed(thinning, errors, |wanted| evaluation.at(wanted))
+            Saliency::weighed(thinning, errors, |places| evaluation.at(places))
         }))
     }
 }

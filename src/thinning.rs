@@ -92,46 +92,54 @@ impl Saliency {
         Self { of: errors, num_free }
     }
 
-    /// Errors weighed by the rank of the descriptor. `evaluate` gives its values where it is told to, anything
-    /// elsewhere: on a large level that is a sample and the vertices about which the weight can decide.
+    /// Errors weighed by the rank of the descriptor. `evaluate` gives its values at some places: on a large level that
+    /// is a sample and the vertices about which the weight can decide.
     pub(crate) fn weighed(
         thinning: Thinning,
         mut errors: Vec<f64>,
-        mut evaluate: impl FnMut(&[bool]) -> Vec<f64>,
+        mut evaluate: impl FnMut(&[u32]) -> Vec<f64>,
     ) -> Self {
         let num_vertices = errors.len();
+        let all = 0..num_vertices as u32;
         if num_vertices <= LARGE {
-            let scores = evaluate(&vec![true; num_vertices]);
+            let scores = evaluate(&all.collect::<Vec<u32>>());
             for (rank, (_, place)) in sorted_keys(&scores).into_iter().enumerate() {
                 errors[place as usize] *= weight(rank as f64 / num_vertices as f64);
             }
             return Self::of_errors(thinning, errors);
         }
         let stride = (num_vertices / SAMPLE) as u32;
-        let is_sample = |place: usize| spread(place) < u32::MAX / stride;
-        let mut wanted: Vec<bool> = (0..num_vertices).map(is_sample).collect();
-        let scores = evaluate(&wanted);
-        let places: Vec<usize> = (0..num_vertices).filter(|&i| wanted[i]).collect();
-        let mut ranking: Vec<f64> = places.iter().map(|&i| scores[i]).collect();
+        let is_sample = |&place: &u32| spread(place) < u32::MAX / stride;
+        let places: Vec<u32> = all.clone().filter(is_sample).collect();
+        let scores = evaluate(&places);
+        let mut ranking = scores.clone();
         ranking.sort_unstable_by(f64::total_cmp);
         // In the middle of equal ones.
         let weight_of = |score: f64| {
             let ends = [ranking.partition_point(|&s| s < score), ranking.partition_point(|&s| s <= score)];
             weight(0.5 * (ends[0] + ends[1]) as f64 / ranking.len() as f64)
         };
-        places.iter().for_each(|&i| errors[i] *= weight_of(scores[i]));
-        let mut sample: Vec<f64> = places.iter().map(|&i| errors[i]).collect();
+        let mut sample = Vec::with_capacity(places.len());
+        for (&place, &score) in places.iter().zip(&scores) {
+            let error = &mut errors[place as usize];
+            *error *= weight_of(score);
+            sample.push(*error);
+        }
         let num_free = thinning.num_free(&sample, sample.clone());
         let last = sample.len() - 1;
         let bound = *sample.select_nth_unstable_by(num_free.min(last), f64::total_cmp).1;
 
         let (low, high) = (bound / (WEIGHT * SLACK), bound * (WEIGHT * SLACK));
-        for (i, wanted) in wanted.iter_mut().enumerate() {
-            *wanted = !*wanted && errors[i] > 0.0 && (low..=high).contains(&errors[i]);
+        let is_open = |&place: &u32| {
+            let error = errors[place as usize];
+            error > 0.0 && (low..=high).contains(&error) && !is_sample(&place)
+        };
+        let places: Vec<u32> = all.filter(is_open).collect();
+        let scores = evaluate(&places);
+        let weights: Vec<f64> = scores.par_iter().map(|&score| weight_of(score)).collect();
+        for (&place, weight) in places.iter().zip(weights) {
+            errors[place as usize] *= weight;
         }
-        let scores = evaluate(&wanted);
-        let weighed = errors.par_iter_mut().zip(&scores).zip(&wanted).filter(|(_, wanted)| **wanted);
-        weighed.for_each(|((error, &score), _)| *error *= weight_of(score));
         let num_free = thinning.num_free(&errors, sample);
         Self { of: errors, num_free }
     }
@@ -153,8 +161,8 @@ fn weight(rank: f64) -> f64 {
 }
 
 /// A number of 32 bits by which places anywhere are told apart evenly.
-fn spread(place: usize) -> u32 {
-    (place as u32).wrapping_mul(0x9e37_79b1)
+fn spread(place: u32) -> u32 {
+    place.wrapping_mul(0x9e37_79b1)
 }
 
 fn sorted_keys(scores: &[f64]) -> Vec<(u64, u32)> {

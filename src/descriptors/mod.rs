@@ -212,32 +212,33 @@ impl<'a> Evaluation<'a> {
     }
 
     /// The values of all vertices, as [`evaluate`] and [`evaluate_with_features`] have them.
-    pub(crate) fn everywhere(mut self) -> Vec<f64> {
-        self.at(&[])
+    pub(crate) fn everywhere(&mut self) -> Vec<f64> {
+        let Self { descriptor, mesh, features, window, ref surface, .. } = *self;
+        let none = &|_| ();
+        evaluate_prepared(mesh, surface.as_ref(), none, |surface| match (features, descriptor) {
+            (Some(features), Descriptor::Pca) => augmented::variation(surface, features, &window, none),
+            (Some(features), _) => augmented::pca_qem(surface, features, &window, none),
+            _ => evaluate_surface(descriptor, surface, &window, Readings::default(), none),
+        })
     }
 
-    /// The values where they are `wanted`; everywhere if that is empty.
-    pub(crate) fn at(&mut self, wanted: &[bool]) -> Vec<f64> {
-        let Self { descriptor, mesh, features, window, ref mut surface, ref mut values } = *self;
-        if let Some(values) = values {
-            return values.clone();
+    /// The values at some places.
+    pub(crate) fn at(&mut self, places: &[u32]) -> Vec<f64> {
+        let needs_all =
+            self.features.is_some() || matches!(self.descriptor, Descriptor::Nfv | Descriptor::PcaQem);
+        if needs_all && self.values.is_none() {
+            self.values = Some(self.everywhere());
         }
-        let needs_all = features.is_some() || matches!(descriptor, Descriptor::Nfv | Descriptor::PcaQem);
-        if let Some(surface) = surface {
-            surface.want(if needs_all { &[] } else { wanted });
+        if let Some(values) = &self.values {
+            return places.iter().map(|&place| values[place as usize]).collect();
         }
-        let evaluated =
-            evaluate_prepared(mesh, surface.as_ref(), &|_| (), |surface| match (features, descriptor) {
-                (Some(features), Descriptor::Pca) => {
-                    augmented::variation(surface, features, &window, &|_| ())
-                }
-                (Some(features), _) => augmented::pca_qem(surface, features, &window, &|_| ()),
-                _ => evaluate_surface(descriptor, surface, &window, Readings::default(), &|_| ()),
-            });
-        if needs_all {
-            *values = Some(evaluated.clone());
-        }
-        evaluated
+        let Some(surface) = &mut self.surface else { return vec![0.0; places.len()] };
+        surface.select(places);
+        let mut values =
+            evaluate_surface(self.descriptor, surface, &self.window, Readings::default(), &|_| ());
+        values.iter_mut().for_each(tidy);
+        surface.select_all();
+        values
     }
 }
 
@@ -290,11 +291,13 @@ fn evaluate_prepared(
         return vec![0.0; mesh.num_vertices()];
     };
     let mut values = surface.in_mesh_order(&evaluate(surface));
-    for value in &mut values {
-        // Also turns −0 and NaN into +0: only windows far beyond any sensible radius could make a NaN.
-        *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };
-    }
+    values.iter_mut().for_each(tidy);
     values
+}
+
+/// Also turns −0 and NaN into +0: only windows far beyond any sensible radius could make a NaN.
+fn tidy(value: &mut f64) {
+    *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };
 }
 
 /// Mean number of vertices in a window, the centre included, over the vertices that have neighbours.

@@ -30,8 +30,8 @@ pub(super) struct Surface {
     mesh_vertices: Vec<u32>,
     /// 1 / l̄ in the units of the scaled positions.
     pub(super) unit: f64,
-    /// Which vertices are to be evaluated; all if empty.
-    wanted: Vec<bool>,
+    /// The vertices that are to be evaluated, if not all.
+    selected: Option<Vec<u32>>,
 }
 
 impl Surface {
@@ -77,7 +77,7 @@ impl Surface {
             || Adjacency::new(mesh_vertices.len(), &triangles),
             || set_normals(&mut vertices, &triangles, normals),
         );
-        Some(Self { triangles, adjacency, vertices, mesh_vertices, unit, wanted: Vec::new() })
+        Some(Self { triangles, adjacency, vertices, mesh_vertices, unit, selected: None })
     }
 
     pub(super) fn num_vertices(&self) -> usize {
@@ -89,17 +89,25 @@ impl Surface {
         self.mesh_vertices[vertex as usize] as usize
     }
 
-    /// Evaluates only the vertices of the mesh that are `wanted` from now on; all if that is empty.
-    pub(super) fn want(&mut self, wanted: &[bool]) {
-        self.wanted.clear();
-        if !wanted.is_empty() {
-            self.wanted.extend(self.mesh_vertices.iter().map(|&v| wanted[v as usize]));
-        }
+    /// Evaluates only these vertices of the mesh from now on.
+    pub(super) fn select(&mut self, places: &[u32]) {
+        let mut vertex_of = vec![0; self.mesh_vertices.len()];
+        self.mesh_vertices.iter().zip(0..).for_each(|(&place, v)| vertex_of[place as usize] = v);
+        self.selected = Some(places.iter().map(|&place| vertex_of[place as usize]).collect());
     }
 
-    /// Whether a vertex has neighbours and is to be evaluated.
-    pub(super) fn wants(&self, vertex: usize) -> bool {
-        self.wanted.get(vertex).is_none_or(|&wanted| wanted) && !self.adjacency.of(vertex).is_empty()
+    pub(super) fn select_all(&mut self) {
+        self.selected = None;
+    }
+
+    /// Number of vertices that are to be evaluated.
+    pub(super) fn num_selected(&self) -> usize {
+        self.selected.as_ref().map_or(self.num_vertices(), Vec::len)
+    }
+
+    /// One of them.
+    pub(super) fn selected(&self, i: usize) -> usize {
+        self.selected.as_ref().map_or(i, |selected| selected[i] as usize)
     }
 
     /// Puts one value per vertex back into the order of the mesh.
