@@ -143,9 +143,10 @@ impl<'a> Descent<'a> {
     }
 
     /// What the partition goes by.
-    fn ranked(&mut self, rings: &Rings) -> Ranked {
+    fn ranked(&mut self) -> Ranked {
         let Settings { descriptor, window, partition, optimize, is_hasty, in_order, .. } = self.settings;
         let (mean_edge, positions) = (self.mean_edge, self.geometry.positions);
+        let (shrinking, memory) = (&self.shrinking, &self.memory);
         let vertices = &self.level.vertices;
         let features = || self.features.as_ref().map(|features| features.of_vertices(vertices));
         if partition == Partition::Algorithm1 {
@@ -155,22 +156,30 @@ impl<'a> Descent<'a> {
             };
             return Ranked::ByScore(self.level.with_mesh(positions, evaluate));
         }
-        let thinning = Thinning::of_level(optimize, vertices.len(), &self.shrinking);
+        let thinning = Thinning::of_level(optimize, vertices.len(), shrinking);
         if !thinning.protects() {
-            return Ranked::BySaliency(Saliency::none(vertices.len()));
+            let saliency = Saliency::none(vertices.len());
+            return Ranked::BySaliency { saliency, rings: Rings::new(shrinking, vertices) };
         }
+        let errors = |vertices: &[u32]| {
+            let rings = Rings::new(shrinking, vertices);
+            (memory.errors(&rings, vertices), rings)
+        };
         if is_hasty {
-            let errors = self.memory.errors(rings, vertices);
-            return Ranked::BySaliency(Saliency::of_errors(thinning, errors));
+            let (errors, rings) = errors(vertices);
+            return Ranked::BySaliency { saliency: Saliency::of_errors(thinning, errors), rings };
         }
-        let (features, memory, vertices) = (features(), &self.memory, vertices.clone());
-        Ranked::BySaliency(self.level.with_mesh(positions, |mesh| {
-            let (mut evaluation, errors) = rayon::join(
-                || Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge, in_order),
-                || memory.errors(rings, &vertices),
-            );
-            Saliency::weighed(thinning, errors, |places| evaluation.at(places))
-        }))
+        let (features, vertices, is_finest) = (features(), vertices.clone(), self.depth == 0);
+        self.level.with_mesh(positions, |mesh| {
+            let prepare =
+                || Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge, in_order);
+            let errors = || errors(&vertices);
+            // The finest level takes the most memory, and the descriptor most of it while it is prepared.
+            let (mut evaluation, (errors, rings)) =
+                if is_finest { (prepare(), errors()) } else { rayon::join(prepare, errors) };
+            let saliency = Saliency::weighed(thinning, errors, |places| evaluation.at(places));
+            Ranked::BySaliency { saliency, rings }
+        })
     }
 }
 
@@ -182,13 +191,7 @@ impl Iterator for Descent<'_> {
             return None;
         }
         let optimize = self.settings.optimize;
-        let is_balanced = self.settings.partition == Partition::Balanced;
-        let rings =
-            if is_balanced { Rings::new(&self.shrinking, &self.level.vertices) } else { Rings::default() };
-        if is_balanced {
-            self.shrinking.forget(&rings, &self.level.vertices);
-        }
-        let ranked = self.ranked(&rings);
+        let ranked = self.ranked();
         let record = remove_level(
             self.settings.optimize,
             self.settings.max_valence,
@@ -198,7 +201,6 @@ impl Iterator for Descent<'_> {
             &self.anchors,
             &mut self.seams,
             &self.level.vertices,
-            &rings,
             ranked,
         );
         if record.len() == 0 {

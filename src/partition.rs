@@ -88,7 +88,6 @@ pub(crate) fn remove_level(
     anchors: &Anchors,
     seams: &mut Seams,
     vertices: &[u32],
-    rings: &Rings,
     ranked: Ranked,
 ) -> LevelRecord {
     match ranked {
@@ -97,7 +96,8 @@ pub(crate) fn remove_level(
             order.retain(|&v| !anchors.is_glued(v));
             remove_in_order(surface, geometry, &order, Some(memory), seams)
         }
-        Ranked::BySaliency(saliency) => {
+        Ranked::BySaliency { saliency, rings } => {
+            surface.forget(&rings, vertices);
             let thinning = Thinning::of_level(optimize, vertices.len(), surface);
             let max_valence = max_valence.unwrap_or(thinning.max_valence);
             let mut free = saliency.least();
@@ -105,8 +105,9 @@ pub(crate) fn remove_level(
                 rings.valence(place) <= max_valence as usize && !anchors.contain(vertices[place as usize])
             });
             leave_seams(optimize, surface, seams, vertices, &mut free);
-            let chosen = closely_packed(rings, &free).into_iter().map(|place| vertices[place as usize]);
+            let chosen = closely_packed(&rings, &free).into_iter().map(|place| vertices[place as usize]);
             let chosen = chosen.collect();
+            drop((saliency, rings));
             remove_as_decoded(surface, geometry, chosen, thinning.tolerance, memory, anchors, seams)
         }
     }
@@ -117,7 +118,7 @@ pub(crate) enum Ranked {
     /// Algorithm 1: the descriptor, of each vertex.
     ByScore(Vec<f64>),
     /// The balanced partition.
-    BySaliency(Saliency),
+    BySaliency { saliency: Saliency, rings: Rings },
 }
 
 /// Removes the vertices of `order` one after the other, unless a neighbour went before or no collapse is
