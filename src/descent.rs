@@ -85,11 +85,6 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// The same with another mean edge.
-    pub(crate) fn with_mean_edge(self, mean_edge: f64) -> Self {
-        Self { mean_edge, ..self }
-    }
-
     /// The same with attributes that the descriptor sees, which must be one that can.
     pub(crate) fn with_features(self, features: Option<Features>) -> Self {
         Self { features, ..self }

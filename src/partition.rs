@@ -9,6 +9,7 @@ use crate::simplify::outlook::Outlook;
 use crate::simplify::packing::{ClassQueue, PackingClasses};
 use crate::simplify::seams::{Demand, may_go};
 use crate::simplify::{LevelRecord, Rings, Seams, ShrinkingSurface, Star};
+pub use crate::thinning::Optimize;
 use crate::thinning::{Saliency, Thinning, score_keys};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
@@ -47,33 +48,6 @@ pub(crate) struct Geometry<'a> {
     pub(crate) grid: &'a [[i32; 3]],
     /// Coordinates of the input: lengths.
     pub(crate) positions: &'a [[f64; 3]],
-}
-
-/// What the balanced partition gives up for what.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Optimize {
-    /// The smallest whole file. No vertex is protected, so the descriptor has no say.
-    Size,
-    /// Prefixes nearly as good as they get, for a file a little larger. The default.
-    #[default]
-    Balanced,
-    /// The best prefixes.
-    Prefix,
-}
-
-impl Optimize {
-    /// Every aim, in the order of their names in help texts.
-    pub const ALL: [Optimize; 3] = [Optimize::Size, Optimize::Balanced, Optimize::Prefix];
-
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Optimize::Size => "size",
-            Optimize::Balanced => "balanced",
-            Optimize::Prefix => "prefix",
-        }
-    }
 }
 
 /// Removes one level of odd vertices. `vertices` are those of the level; `ranked` is what says in which order or

@@ -185,6 +185,11 @@ impl ShrinkingSurface {
             surface.opposite[3 * slot as usize..3 * slot as usize + 3].fill(NO_CORNER);
         }
         let closes_new_edge = !star.is_closed() && degree > 2;
+        if closes_new_edge {
+            let (first, last) = (star.ring[0], star.ring[degree - 1]);
+            self.acquaintances[first as usize] |= bit(last);
+            self.acquaintances[last as usize] |= bit(first);
+        }
         for (i, &v) in star.ring.iter().enumerate() {
             let is_end = i == 0 || i == degree - 1;
             surface.valence[v as usize] -= u32::from(!(closes_new_edge && is_end));
@@ -254,6 +259,9 @@ mod tests {
             .map(|t| t.map(|v| name[v as usize]))
             .collect();
         assert_eq!((left.len(), count as usize), (shrinking.num_faces(), shrinking.num_vertices()));
+        for &[a, b, c] in shrinking.surface.triangles.iter().filter(|&&t| t != FREE) {
+            assert!(shrinking.has_edge(a, b) && shrinking.has_edge(b, c) && shrinking.has_edge(c, a));
+        }
         let rebuilt = Surface::from_triangles(left, count as usize).unwrap();
         for (v, &n) in name.iter().enumerate() {
             if n != u32::MAX {
