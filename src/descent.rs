@@ -1,12 +1,14 @@
 //! From M^L down: level by level the descriptor ranks the vertices and the partition removes the odd ones.
 
-use crate::descriptors::{self, Descriptor, Features, Window};
+use crate::TriMesh;
+use crate::descriptors::{Descriptor, Evaluation, Features, Window};
 use crate::levels::Level;
 use crate::mesh::Surface;
-use crate::partition::{Geometry, Optimize, Partition, is_coarse, remove_level};
+use crate::partition::{Geometry, Optimize, Partition, Ranked, is_coarse, remove_level};
 use crate::simplify::canonical::Anchors;
 use crate::simplify::memory::ErrorMemory;
-use crate::simplify::{LevelRecord, Seams, ShrinkingSurface};
+use crate::simplify::{LevelRecord, Rings, Seams, ShrinkingSurface};
+use crate::thinning::{Saliency, Thinning};
 use bitvec::vec::BitVec;
 
 /// Most levels, whatever the wish.
@@ -30,6 +32,8 @@ pub(crate) struct Settings {
     pub(crate) optimize: Optimize,
     /// The descriptor is left out where the partition can do without.
     pub(crate) is_hasty: bool,
+    /// Whether vertices that are near each other in space follow each other.
+    pub(crate) in_order: bool,
     /// Largest valence that goes, if not the usual one.
     pub(crate) max_valence: Option<u32>,
 }
@@ -133,20 +137,43 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Empty where the partition does not look at them.
-    fn scores(&mut self) -> Vec<f64> {
-        let Settings { descriptor, window, partition, optimize, is_hasty, .. } = self.settings;
-        if !partition.uses_descriptor(optimize) || is_hasty && partition == Partition::Balanced {
-            return Vec::new();
+    /// What the partition goes by.
+    fn ranked(&mut self) -> Ranked {
+        let Settings { descriptor, window, partition, optimize, is_hasty, in_order, .. } = self.settings;
+        let (mean_edge, positions) = (self.mean_edge, self.geometry.positions);
+        let (shrinking, memory) = (&self.shrinking, &self.memory);
+        let vertices = &self.level.vertices;
+        let features = || self.features.as_ref().map(|features| features.of_vertices(vertices));
+        if partition == Partition::Algorithm1 {
+            let features = features();
+            let evaluate = |mesh: &TriMesh| {
+                Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge, in_order).everywhere()
+            };
+            return Ranked::ByScore(self.level.with_mesh(positions, evaluate));
         }
-        let mean_edge = self.mean_edge;
-        let features = self.features.as_ref().map(|features| features.of_vertices(&self.level.vertices));
-        self.level.with_mesh(self.geometry.positions, |mesh| {
-            let augmented = features.and_then(|features| {
-                let see_all = descriptors::evaluate_with_features;
-                see_all(descriptor, mesh, &features, &window, mean_edge, &|_| ()).ok()
-            });
-            augmented.unwrap_or_else(|| descriptors::evaluate(descriptor, mesh, &window, mean_edge))
+        let thinning = Thinning::of_level(optimize, vertices.len(), shrinking);
+        if !thinning.protects() {
+            let saliency = Saliency::none(vertices.len());
+            return Ranked::BySaliency { saliency, rings: Rings::new(shrinking, vertices) };
+        }
+        let errors = |vertices: &[u32]| {
+            let rings = Rings::new(shrinking, vertices);
+            (memory.errors(&rings, vertices), rings)
+        };
+        if is_hasty {
+            let (errors, rings) = errors(vertices);
+            return Ranked::BySaliency { saliency: Saliency::of_errors(thinning, errors), rings };
+        }
+        let (features, vertices, is_finest) = (features(), vertices.clone(), self.depth == 0);
+        self.level.with_mesh(positions, |mesh| {
+            let prepare =
+                || Evaluation::new(descriptor, mesh, features.as_ref(), window, mean_edge, in_order);
+            let errors = || errors(&vertices);
+            // The finest level takes the most memory, and the descriptor most of it while it is prepared.
+            let (mut evaluation, (errors, rings)) =
+                if is_finest { (prepare(), errors()) } else { rayon::join(prepare, errors) };
+            let saliency = Saliency::weighed(thinning, errors, |places| evaluation.at(places));
+            Ranked::BySaliency { saliency, rings }
         })
     }
 }
@@ -159,9 +186,8 @@ impl Iterator for Descent<'_> {
             return None;
         }
         let optimize = self.settings.optimize;
-        let scores = self.scores();
+        let ranked = self.ranked();
         let record = remove_level(
-            self.settings.partition,
             self.settings.optimize,
             self.settings.max_valence,
             &mut self.shrinking,
@@ -170,7 +196,7 @@ impl Iterator for Descent<'_> {
             &self.anchors,
             &mut self.seams,
             &self.level.vertices,
-            &scores,
+            ranked,
         );
         if record.len() == 0 {
             let num_vertices = self.level.vertices.len();

@@ -3,6 +3,10 @@
 use crate::TriMesh;
 use crate::simplify::ShrinkingSurface;
 use crate::simplify::shrinking::FREE;
+use rayon::prelude::*;
+
+/// Triangles whose sides are added up by one thread.
+const BLOCK: usize = 1 << 12;
 
 /// The vertices and triangles of one level, renumbered without gaps.
 pub(crate) struct Level {
@@ -46,13 +50,16 @@ impl Level {
     /// Mean length of the sides of all triangles, in steps.
     pub(crate) fn mean_edge(&self, cells: &[[i32; 3]]) -> f64 {
         let at = |v: u32| cells[self.vertices[v as usize] as usize];
-        let mut sum = 0.0;
-        for t in &self.triangles {
-            for i in 0..3 {
-                let (p, q) = (at(t[i]), at(t[(i + 1) % 3]));
-                sum += (0..3).map(|a| (f64::from(p[a]) - f64::from(q[a])).powi(2)).sum::<f64>().sqrt();
-            }
-        }
+        let length = |p: [i32; 3], q: [i32; 3]| {
+            (0..3).map(|a| (f64::from(p[a]) - f64::from(q[a])).powi(2)).sum::<f64>().sqrt()
+        };
+        let sides = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(at);
+            length(a, b) + length(b, c) + length(c, a)
+        };
+        // Blocks make the sum independent of the number of threads.
+        let blocks = self.triangles.par_chunks(BLOCK).map(|block| block.iter().map(sides).sum::<f64>());
+        let sum: f64 = blocks.collect::<Vec<f64>>().into_iter().sum();
         sum / (3 * self.triangles.len().max(1)) as f64
     }
 }

@@ -39,6 +39,8 @@ pub mod render;
 mod scene;
 #[cfg(feature = "encoder")]
 mod simplify;
+#[cfg(feature = "encoder")]
+mod thinning;
 
 pub use decoder::{
     AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Step, StreamInfo, TrailingInfo,

@@ -5,12 +5,14 @@ use crate::simplify::canonical::{Anchors, patch_order};
 use crate::simplify::collapse::CollapseTest;
 use crate::simplify::hole::HoleFiller;
 use crate::simplify::memory::ErrorMemory;
+use crate::simplify::outlook::Outlook;
+use crate::simplify::packing::{ClassQueue, PackingClasses};
 use crate::simplify::seams::{Demand, may_go};
-use crate::simplify::{LevelRecord, Seams, ShrinkingSurface, Star};
+use crate::simplify::{LevelRecord, Rings, Seams, ShrinkingSurface, Star};
+pub use crate::thinning::Optimize;
+use crate::thinning::{Saliency, Thinning, score_keys};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// How a level is split into odd and even vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -37,11 +39,6 @@ impl Partition {
             Partition::Algorithm1 => "algorithm1",
         }
     }
-
-    /// Whether the descriptor has a say.
-    pub(crate) fn uses_descriptor(self, optimize: Optimize) -> bool {
-        self == Partition::Algorithm1 || optimize != Optimize::Size
-    }
 }
 
 /// Coordinates that decide removals: both per vertex of the surface.
@@ -53,89 +50,10 @@ pub(crate) struct Geometry<'a> {
     pub(crate) positions: &'a [[f64; 3]],
 }
 
-/// What the balanced partition gives up for what.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Optimize {
-    /// The smallest whole file. No vertex is protected, so the descriptor has no say; and where that is smaller, there are no
-    /// levels, unless their number is given.
-    Size,
-    /// Prefixes nearly as good as they get, for a file a little larger. The default.
-    #[default]
-    Balanced,
-    /// The best prefixes.
-    Prefix,
-}
-
-impl Optimize {
-    /// Every aim, in the order of their names in help texts.
-    pub const ALL: [Optimize; 3] = [Optimize::Size, Optimize::Balanced, Optimize::Prefix];
-
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Optimize::Size => "size",
-            Optimize::Balanced => "balanced",
-            Optimize::Prefix => "prefix",
-        }
-    }
-}
-
-/// How a level is thinned out.
-#[derive(Clone, Copy)]
-struct Thinning {
-    /// Share of the vertices, the most salient ones, that stay.
-    protected: f64,
-    /// So many times the median saliency is too much to go as well.
-    outlier: Option<f64>,
-    /// Largest valence that goes.
-    max_valence: u32,
-    /// How much worse (squared distance) a hole may be closed to be cheaper to code.
-    tolerance: f64,
-}
-
-/// On scans about a fifth of the vertices are beyond it. Where creases bound flat parts, almost all of the
-/// error is along the creases: more of them stay, and the flat parts are thinned out first.
-const OUTLIER: f64 = 3.5;
-/// Largest share that stays for that reason.
-const MOST_OUTLIERS: f64 = 0.6;
-
-impl Thinning {
-    fn new(protected: f64, outlier: Option<f64>, max_valence: u32, tolerance: f64) -> Self {
-        Self { protected, outlier, max_valence, tolerance }
-    }
-
-    /// How many of the vertices may go.
-    fn num_free(&self, saliency: &[f64]) -> usize {
-        let part = |share: f64| ((1.0 - share) * saliency.len() as f64).ceil() as usize;
-        let most = part(self.protected);
-        let Some(outlier) = self.outlier else { return most };
-        let mut sorted = saliency.to_vec();
-        let median = *sorted.select_nth_unstable_by(saliency.len() / 2, f64::total_cmp).1;
-        let usual = saliency.iter().filter(|&&s| s <= outlier * median).count();
-        usual.clamp(part(MOST_OUTLIERS).min(most), most)
-    }
-
-    /// Most vertices come back in the finest levels: there the cost of coding counts, before that
-    /// the shape.
-    fn of(optimize: Optimize, is_fine: bool) -> Self {
-        match (optimize, is_fine) {
-            (Optimize::Size, _) => Self::new(0.0, None, 6, f64::INFINITY),
-            (Optimize::Balanced, true) => Self::new(0.1, None, 6, 8.0),
-            (Optimize::Balanced, false) => Self::new(0.2, Some(OUTLIER), 7, 2.0),
-            (Optimize::Prefix, _) => Self::new(0.2, Some(OUTLIER), 7, 1.0),
-        }
-    }
-}
-
-/// Levels with more than this share of all vertices are fine.
-const FINE_SHARE: f64 = 0.7;
-
-/// Removes one level of odd vertices. `vertices` are those of the level and `scores` their
-/// descriptor values, in the same order; there are none if the descriptor has no say.
+/// Removes one level of odd vertices. `vertices` are those of the level; `ranked` is what says in which order or
+/// which of them go.
 #[expect(clippy::too_many_arguments, reason = "what a level is, and what is kept from one to the next")]
 pub(crate) fn remove_level(
-    partition: Partition,
     optimize: Optimize,
     max_valence: Option<u32>,
     surface: &mut ShrinkingSurface,
@@ -144,25 +62,37 @@ pub(crate) fn remove_level(
     anchors: &Anchors,
     seams: &mut Seams,
     vertices: &[u32],
-    scores: &[f64],
+    ranked: Ranked,
 ) -> LevelRecord {
-    let is_fine = vertices.len() as f64 > FINE_SHARE * surface.surface.corner_of.len() as f64;
-    let mut thinning = Thinning::of(optimize, is_fine);
-    thinning.max_valence = max_valence.unwrap_or(thinning.max_valence);
-    match partition {
-        Partition::Algorithm1 => {
-            let mut order = by_score(vertices, scores);
+    match ranked {
+        Ranked::ByScore(scores) => {
+            let mut order = by_score(vertices, &scores);
             order.retain(|&v| !anchors.is_glued(v));
             remove_in_order(surface, geometry, &order, Some(memory), seams)
         }
-        Partition::Balanced => {
-            let mut free = candidates(surface, memory, vertices, scores, thinning);
-            free.retain(|&v| !anchors.contain(v));
-            leave_seams(optimize, surface, seams, vertices.len(), &mut free);
-            let chosen = closely_packed(surface, &free);
-            remove_as_decoded(surface, geometry, &chosen, thinning.tolerance, memory, anchors, seams)
+        Ranked::BySaliency { saliency, rings } => {
+            surface.forget(&rings, vertices);
+            let thinning = Thinning::of_level(optimize, vertices.len(), surface);
+            let max_valence = max_valence.unwrap_or(thinning.max_valence);
+            let mut free = saliency.least();
+            free.retain(|&place| {
+                rings.valence(place) <= max_valence as usize && !anchors.contain(vertices[place as usize])
+            });
+            leave_seams(optimize, surface, seams, vertices, &mut free);
+            let chosen = closely_packed(&rings, &free).into_iter().map(|place| vertices[place as usize]);
+            let chosen = chosen.collect();
+            drop((saliency, rings));
+            remove_as_decoded(surface, geometry, chosen, thinning.tolerance, memory, anchors, seams)
         }
     }
+}
+
+/// What a partition goes by.
+pub(crate) enum Ranked {
+    /// Algorithm 1: the descriptor, of each vertex.
+    ByScore(Vec<f64>),
+    /// The balanced partition.
+    BySaliency { saliency: Saliency, rings: Rings },
 }
 
 /// Removes the vertices of `order` one after the other, unless a neighbour went before or no collapse is
@@ -204,39 +134,41 @@ pub(crate) fn remove_in_order(
 fn remove_as_decoded(
     surface: &mut ShrinkingSurface,
     geometry: Geometry,
-    chosen: &[u32],
+    mut chosen: Vec<u32>,
     tolerance: f64,
     memory: &mut ErrorMemory,
     anchors: &Anchors,
     seams: &mut Seams,
 ) -> LevelRecord {
+    let Geometry { grid, positions } = geometry;
+    let see_fans = tolerance < f64::INFINITY && seams.is_empty();
     let mut odd: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     chosen.iter().for_each(|&v| odd.set(v as usize, true));
-    let order = patch_order(surface, &odd, anchors);
+    chosen.sort_unstable();
+    let (order, outlook) = rayon::join(
+        || patch_order(surface, &odd, anchors),
+        || Outlook::new(surface, grid, positions, memory, &chosen, see_fans),
+    );
     let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;
     let (ears, patches): (Vec<u32>, Vec<u32>) = order.into_iter().rev().partition(is_ear);
     let mut record = LevelRecord::default();
     let mut star = Star::default();
     let mut filler = HoleFiller::default();
     for corner in patches.into_iter().chain(ears) {
-        surface.read_star_from(corner, &mut star);
-        let mut demand = seams.demand(&star);
-        let Geometry { grid, positions } = geometry;
-        if demand != Demand::None {
-            let mut is_met = |d| filler.fill(surface, &star, grid, positions, tolerance, d).is_some();
-            if matches!(demand, Demand::Diagonal(_)) && !is_met(demand) {
-                demand = seams.demand_less(&star);
+        let ahead = outlook.read(surface.surface.vertex(corner), corner, &mut star);
+        let demand = demand_that_is_met(seams, surface, geometry, &star, tolerance, &mut filler);
+        let filled = match demand {
+            Demand::Stay => continue,
+            Demand::None => {
+                filler.fill_as_foreseen(surface, &star, grid, positions, tolerance, ahead.prospect)
             }
-            if !seams.hold() && !is_met(demand) {
-                demand = Demand::None;
-            }
-        }
-        if demand == Demand::Stay {
-            continue;
-        }
-        let filled = filler.fill(surface, &star, grid, positions, tolerance, demand);
+            _ => filler.fill(surface, &star, grid, positions, tolerance, demand),
+        };
         let Some(ears) = filled else { continue };
-        memory.hand_on(&star);
+        match ahead.heir {
+            Some(heir) => memory.hand_on_to(star.vertex, heir),
+            None => memory.hand_on(&star),
+        }
         let faces = surface.remove(&star, ears);
         record.push(star.vertex, &star.ring, faces);
         seams.remove(&star, ears, &mut record);
@@ -245,40 +177,39 @@ fn remove_as_decoded(
     record
 }
 
+/// What the seams want of the hole of a star, as far as there is a hole that meets it.
+fn demand_that_is_met(
+    seams: &Seams,
+    surface: &ShrinkingSurface,
+    Geometry { grid, positions }: Geometry,
+    star: &Star,
+    tolerance: f64,
+    filler: &mut HoleFiller,
+) -> Demand {
+    let mut demand = seams.demand(star);
+    if demand != Demand::None {
+        let mut is_met = |d| filler.fill(surface, star, grid, positions, tolerance, d).is_some();
+        if matches!(demand, Demand::Diagonal(_)) && !is_met(demand) {
+            demand = seams.demand_less(star);
+        }
+        if !seams.hold() && !is_met(demand) {
+            demand = Demand::None;
+        }
+    }
+    demand
+}
+
 /// Ascending score, ties by index: the order of Algorithm 1.
 pub(crate) fn by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
     places_by_score(vertices, scores).into_iter().map(|i| vertices[i as usize]).collect()
 }
 
-/// The same as places in `vertices`.
+/// The same as places in `vertices`, which ascend.
 fn places_by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
-    order.sort_by(|&a, &b| {
-        let (a, b) = (a as usize, b as usize);
-        // Adding 0 makes −0 equal to 0.
-        (scores[a] + 0.0).total_cmp(&(scores[b] + 0.0)).then(vertices[a].cmp(&vertices[b]))
-    });
-    order
-}
-
-/// The vertices that may go: all but the most salient ones and those of high valence. Saliency is the error
-/// of the best collapse, between half and twice as much by the rank of the descriptor.
-fn candidates(
-    surface: &ShrinkingSurface,
-    memory: &ErrorMemory,
-    vertices: &[u32],
-    scores: &[f64],
-    thinning: Thinning,
-) -> Vec<u32> {
-    let mut free = vertices.to_vec();
-    if thinning.protected > 0.0 {
-        let saliency = saliency(surface, memory, vertices, scores);
-        free = by_score(vertices, &saliency);
-        free.truncate(thinning.num_free(&saliency));
-    }
-    let valence = |v: u32| surface.surface.valence[v as usize];
-    free.retain(|&v| valence(v) <= thinning.max_valence);
-    free
+    debug_assert!(vertices.is_sorted());
+    let mut keys = score_keys(scores);
+    keys.par_sort_unstable();
+    keys.into_iter().map(|(_, place)| place).collect()
 }
 
 /// Whether so few vertices are left that they may as well be the base, if seams want them. The smallest file is the one
@@ -295,7 +226,7 @@ fn leave_seams(
     optimize: Optimize,
     surface: &ShrinkingSurface,
     seams: &mut Seams,
-    num_vertices: usize,
+    vertices: &[u32],
     free: &mut Vec<u32>,
 ) {
     /// Share of the vertices that could go otherwise.
@@ -304,91 +235,79 @@ fn leave_seams(
         return;
     }
     let mut star = Star::default();
-    let kept: Vec<u32> = free.iter().copied().filter(|&v| may_go(seams, surface, v, &mut star)).collect();
-    if is_coarse(optimize, num_vertices, surface) || kept.len() as f64 >= LEAST_FREE * free.len() as f64 {
+    let mut may_go = |&place: &u32| may_go(seams, surface, vertices[place as usize], &mut star);
+    let kept: Vec<u32> = free.iter().copied().filter(|place| may_go(place)).collect();
+    if is_coarse(optimize, vertices.len(), surface) || kept.len() as f64 >= LEAST_FREE * free.len() as f64 {
         *free = kept;
     } else {
         seams.loosen();
-        leave_seams(optimize, surface, seams, num_vertices, free);
+        leave_seams(optimize, surface, seams, vertices, free);
     }
 }
 
 /// Those of `free` that go one after the other if each rules out its neighbours, the ones first whose
 /// valence less some of the share of their neighbours that are next to a removed vertex already is least,
 /// ties by index.
-fn closely_packed(surface: &ShrinkingSurface, free: &[u32]) -> Vec<u32> {
-    /// What a ring counts, all of whose vertices are next to others, in units of valence.
-    const WEIGHT: f64 = 0.7;
-    let num_slots = surface.surface.corner_of.len();
-    let mut may_go: BitVec = BitVec::repeat(false, num_slots);
-    free.iter().for_each(|&v| may_go.set(v as usize, true));
-    let mut touched: BitVec = BitVec::repeat(false, num_slots);
-    let mut num_touched = vec![0_u8; num_slots];
-    let key = |v: u32, num_touched: &[u8]| {
-        let degree = f64::from(surface.surface.valence[v as usize]);
-        let key = degree - WEIGHT * f64::from(num_touched[v as usize]) / degree;
-        // In one number, as the queue takes a good part of the encoder's time.
-        Reverse(((1000.0 * key) as u64) << 32 | u64::from(v))
-    };
-    let mut queue: BinaryHeap<_> = free.iter().map(|&v| key(v, &num_touched)).collect();
+fn closely_packed(rings: &Rings, free: &[u32]) -> Vec<u32> {
+    let largest = free.iter().map(|&v| rings.valence(v)).max().unwrap_or(0);
+    let classes = PackingClasses::new(largest);
+    // Of each free vertex how many of its neighbours are next to a removed vertex.
+    let mut states = vec![Packing::STAYS; rings.len()];
+    let class = |v: u32, Packing(touched): Packing| classes.of(rings.valence(v), usize::from(touched));
+    let mut queue = ClassQueue::new(classes.count, rings.len());
+    for &v in free {
+        states[v as usize] = Packing::default();
+        queue.insert(class(v, Packing::default()), v);
+    }
     let mut chosen = Vec::new();
-    let (mut star, mut second) = (Star::default(), Star::default());
-    let (mut fresh, mut nearer) = (Vec::new(), Vec::new());
-    while let Some(first) = queue.pop() {
-        let v = first.0 as u32;
-        if touched[v as usize] || key(v, &num_touched) != first {
-            continue;
-        }
+    let (mut fresh, mut changed) = (Vec::new(), Vec::new());
+    while let Some(v) = queue.pop() {
         chosen.push(v);
-        surface.read_star(v, &mut star);
-        fresh.extend(star.ring.iter().copied().filter(|&u| !touched[u as usize]));
-        fresh.iter().chain([&v]).for_each(|&u| touched.set(u as usize, true));
-        for u in fresh.drain(..) {
-            surface.read_star(u, &mut second);
-            for &w in second.ring.iter().filter(|&&w| may_go[w as usize] && !touched[w as usize]) {
-                num_touched[w as usize] = num_touched[w as usize].saturating_add(1);
-                nearer.push(w);
+        states[v as usize] = Packing::TOUCHED;
+        for &u in rings.of(v) {
+            let state = std::mem::replace(&mut states[u as usize], Packing::TOUCHED);
+            if state.is_free() {
+                queue.remove(class(u, state), u);
+            }
+            if state != Packing::TOUCHED {
+                fresh.push(u);
             }
         }
-        nearer.sort_unstable();
-        nearer.dedup();
-        queue.extend(nearer.drain(..).map(|w| key(w, &num_touched)));
+        for &w in fresh.iter().flat_map(|&u| rings.of(u)) {
+            let state = &mut states[w as usize];
+            if state.is_free() {
+                if state.0 & Packing::CHANGED == 0 {
+                    changed.push((w, *state));
+                    state.0 |= Packing::CHANGED;
+                }
+                state.0 += 1;
+            }
+        }
+        fresh.clear();
+        for (w, before) in changed.drain(..) {
+            let state = &mut states[w as usize];
+            state.0 &= !Packing::CHANGED;
+            queue.remove(class(w, before), w);
+            queue.insert(class(w, *state), w);
+        }
     }
     chosen
 }
 
-/// Error of the best collapse of each vertex, weighed by the rank of its score if there are scores.
-fn saliency(surface: &ShrinkingSurface, memory: &ErrorMemory, vertices: &[u32], scores: &[f64]) -> Vec<f64> {
-    const MIN_PARALLEL: usize = 2048;
-    let mut weight = vec![1.0_f64; vertices.len()];
-    let places = if scores.is_empty() { Vec::new() } else { places_by_score(vertices, scores) };
-    for (rank, place) in places.into_iter().enumerate() {
-        weight[place as usize] = (2.0 * rank as f64 / vertices.len() as f64 - 1.0).exp2();
-    }
-    let weighed = |star: &mut Star, (&v, weight): (&u32, f64)| {
-        surface.read_star(v, star);
-        weight * memory.least_error(star).0
-    };
-    let pairs = vertices.par_iter().zip(weight).with_min_len(MIN_PARALLEL);
-    pairs.map_init(Star::default, weighed).collect()
-}
+/// What is known of a vertex while others are chosen: if it is free, the number of neighbours that are next to a
+/// removed vertex.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+struct Packing(u8);
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+impl Packing {
+    /// It is not free.
+    const STAYS: Self = Self(u8::MAX);
+    /// It is removed or next to a removed vertex.
+    const TOUCHED: Self = Self(u8::MAX - 1);
+    /// Added to the number until the queue knows of it.
+    const CHANGED: u8 = 1 << 6;
 
-    #[test]
-    fn creases_stay_where_most_of_the_surface_is_flat() {
-        let thinning = Thinning::of(Optimize::Balanced, false);
-        let even: Vec<f64> = (0..100).map(|i| 1.0 + f64::from(i) / 100.0).collect();
-        assert_eq!(thinning.num_free(&even), 80);
-        let mut creased = vec![0.0; 70];
-        creased.resize(100, 1.0);
-        assert_eq!(thinning.num_free(&creased), 70);
-        creased.resize(1000, 1.0);
-        assert_eq!(thinning.num_free(&creased), 800);
-        let flat = Thinning::of(Optimize::Balanced, true);
-        assert_eq!(flat.num_free(&[0.0; 10]), 9);
-        assert_eq!(Thinning::of(Optimize::Prefix, true).num_free(&[0.0]), 1);
+    fn is_free(self) -> bool {
+        self.0 < Self::TOUCHED.0
     }
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 23] = [
+const LAYERS: [(&str, &[&str]); 24] = [
     ("error", &[]),
     ("limits", &["error"]),
     ("lanes", &[]),
@@ -21,8 +21,9 @@ const LAYERS: [(&str, &[&str]); 23] = [
     ("lifting", &["lanes"]),
     ("simplify", &["mesh"]),
     ("levels", &["mesh", "simplify"]),
-    ("partition", &["mesh", "simplify"]),
-    ("descent", &["descriptors", "levels", "mesh", "partition", "simplify"]),
+    ("thinning", &["simplify"]),
+    ("partition", &["mesh", "simplify", "thinning"]),
+    ("descent", &["descriptors", "levels", "mesh", "partition", "simplify", "thinning"]),
     ("passes", &["bitstream", "lanes", "lifting", "mesh"]),
     ("decoder", &["bitstream", "error", "limits", "mesh", "passes", "profile", "scene"]),
     (

@@ -73,6 +73,7 @@ impl Tower {
             partition,
             optimize,
             is_hasty: false,
+            in_order: false,
             max_valence: None,
         };
         let none: BitVec = BitVec::repeat(false, num_vertices);

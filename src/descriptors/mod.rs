@@ -160,8 +160,20 @@ pub fn evaluate_reading(
     readings: Readings,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Vec<f64> {
-    let surface = prepare(mesh, window, mean_edge, readings.normals);
-    evaluate_prepared(mesh, surface, progress, |surface| match descriptor {
+    let surface = prepare(mesh, window, mean_edge, readings.normals, false);
+    evaluate_prepared(mesh, surface.as_ref(), progress, |surface| {
+        evaluate_surface(descriptor, surface, window, readings, progress)
+    })
+}
+
+fn evaluate_surface(
+    descriptor: Descriptor,
+    surface: &Surface,
+    window: &Window,
+    readings: Readings,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Vec<f64> {
+    match descriptor {
         Descriptor::Pca => pca::evaluate(surface, window, progress),
         Descriptor::Nfv => nfv::evaluate(surface, window, progress),
         Descriptor::Casorati => casorati::evaluate(surface, window, progress),
@@ -169,7 +181,65 @@ pub fn evaluate_reading(
         Descriptor::Harris3d => harris3d::evaluate(surface, window, progress),
         Descriptor::Sqem => sqem::evaluate(surface, window, progress),
         Descriptor::PcaQem => pca_qem::evaluate(surface, window, readings.pca_quadric, progress),
-    })
+    }
+}
+
+/// A descriptor on a mesh, evaluated where it is asked.
+pub(crate) struct Evaluation<'a> {
+    descriptor: Descriptor,
+    mesh: &'a TriMesh,
+    features: Option<&'a Features>,
+    window: Window,
+    surface: Option<Surface>,
+    /// All values, of a descriptor that needs something of each vertex first.
+    values: Option<Vec<f64>>,
+}
+
+impl<'a> Evaluation<'a> {
+    /// `features` count only if the descriptor knows attributes. Vertices `in_order` are near each other in memory if
+    /// they are so in space.
+    pub(crate) fn new(
+        descriptor: Descriptor,
+        mesh: &'a TriMesh,
+        features: Option<&'a Features>,
+        window: Window,
+        mean_edge: f64,
+        in_order: bool,
+    ) -> Self {
+        let surface = prepare(mesh, &window, mean_edge, NormalWeights::default(), in_order);
+        let features = features.filter(|_| descriptor.knows_attributes());
+        Self { descriptor, mesh, features, window, surface, values: None }
+    }
+
+    /// The values of all vertices, as [`evaluate`] and [`evaluate_with_features`] have them.
+    pub(crate) fn everywhere(&mut self) -> Vec<f64> {
+        let Self { descriptor, mesh, features, window, ref surface, .. } = *self;
+        let none = &|_| ();
+        evaluate_prepared(mesh, surface.as_ref(), none, |surface| match (features, descriptor) {
+            (Some(features), Descriptor::Pca) => augmented::variation(surface, features, &window, none),
+            (Some(features), _) => augmented::pca_qem(surface, features, &window, none),
+            _ => evaluate_surface(descriptor, surface, &window, Readings::default(), none),
+        })
+    }
+
+    /// The values at some places.
+    pub(crate) fn at(&mut self, places: &[u32]) -> Vec<f64> {
+        let needs_all =
+            self.features.is_some() || matches!(self.descriptor, Descriptor::Nfv | Descriptor::PcaQem);
+        if needs_all && self.values.is_none() {
+            self.values = Some(self.everywhere());
+        }
+        if let Some(values) = &self.values {
+            return places.iter().map(|&place| values[place as usize]).collect();
+        }
+        let Some(surface) = &mut self.surface else { return vec![0.0; places.len()] };
+        surface.select(places);
+        let mut values =
+            evaluate_surface(self.descriptor, surface, &self.window, Readings::default(), &|_| ());
+        values.iter_mut().for_each(tidy);
+        surface.select_all();
+        values
+    }
 }
 
 /// As [`evaluate_with_progress`], of vertices with attributes: `features` has one row per vertex of `mesh`.
@@ -192,19 +262,27 @@ pub fn evaluate_with_features(
         Descriptor::PcaQem => augmented::pca_qem,
         _ => return Err(FeaturesError::Descriptor { descriptor }),
     };
-    let prepared = prepare(mesh, window, mean_edge, NormalWeights::default());
-    Ok(evaluate_prepared(mesh, prepared, progress, |surface| evaluate(surface, features, window, progress)))
+    let prepared = prepare(mesh, window, mean_edge, NormalWeights::default(), false);
+    Ok(evaluate_prepared(mesh, prepared.as_ref(), progress, |surface| {
+        evaluate(surface, features, window, progress)
+    }))
 }
 
 /// `None` where every value is 0.
-fn prepare(mesh: &TriMesh, window: &Window, mean_edge: f64, normals: NormalWeights) -> Option<Surface> {
+fn prepare(
+    mesh: &TriMesh,
+    window: &Window,
+    mean_edge: f64,
+    normals: NormalWeights,
+    in_order: bool,
+) -> Option<Surface> {
     let usable = window.radius > 0.0 && mean_edge > 0.0 && mean_edge.is_finite();
-    usable.then(|| Surface::new(mesh, mean_edge, normals)).flatten()
+    usable.then(|| Surface::new(mesh, mean_edge, normals, in_order)).flatten()
 }
 
 fn evaluate_prepared(
     mesh: &TriMesh,
-    surface: Option<Surface>,
+    surface: Option<&Surface>,
     progress: &(dyn Fn(usize) + Sync),
     evaluate: impl FnOnce(&Surface) -> Vec<f64>,
 ) -> Vec<f64> {
@@ -212,19 +290,21 @@ fn evaluate_prepared(
         progress(mesh.num_vertices());
         return vec![0.0; mesh.num_vertices()];
     };
-    let mut values = surface.in_mesh_order(&evaluate(&surface));
-    for value in &mut values {
-        // Also turns −0 and NaN into +0: only windows far beyond any sensible radius could make a NaN.
-        *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };
-    }
+    let mut values = surface.in_mesh_order(&evaluate(surface));
+    values.iter_mut().for_each(tidy);
     values
+}
+
+/// Also turns −0 and NaN into +0: only windows far beyond any sensible radius could make a NaN.
+fn tidy(value: &mut f64) {
+    *value = if *value > 0.0 { value.min(f64::MAX) } else { 0.0 };
 }
 
 /// Mean number of vertices in a window, the centre included, over the vertices that have neighbours.
 ///
 /// `window` and `mean_edge` as in [`evaluate`]; 0 where that gives zeros. Runs on the current rayon pool.
 pub fn mean_window_size(mesh: &TriMesh, window: &Window, mean_edge: f64) -> f64 {
-    let Some(surface) = prepare(mesh, window, mean_edge, NormalWeights::default()) else {
+    let Some(surface) = prepare(mesh, window, mean_edge, NormalWeights::default(), false) else {
         return 0.0;
     };
     let sizes = window::map_windows(&surface, window, &|_| (), |local| local.len());

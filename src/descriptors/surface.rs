@@ -30,11 +30,20 @@ pub(super) struct Surface {
     mesh_vertices: Vec<u32>,
     /// 1 / l̄ in the units of the scaled positions.
     pub(super) unit: f64,
+    /// The vertices that are to be evaluated, if not all.
+    selected: Option<Vec<u32>>,
 }
 
 impl Surface {
     /// `None` if l̄ vanishes beside the coordinates, or there are no edges.
-    pub(super) fn new(mesh: &TriMesh, mean_edge: f64, normals: NormalWeights) -> Option<Self> {
+    ///
+    /// Vertices keep their order if they are `in_order`: those near each other in memory are so in space.
+    pub(super) fn new(
+        mesh: &TriMesh,
+        mean_edge: f64,
+        normals: NormalWeights,
+        in_order: bool,
+    ) -> Option<Self> {
         let mut triangles = proper_triangles(mesh);
         let (low, high) = bounding_box(mesh, &triangles)?;
         // l̄ goes to [1, 2), less if coordinates would overflow. Differences may still become infinite
@@ -47,7 +56,11 @@ impl Surface {
         }
 
         let positions = scaled_positions(mesh, shift);
-        let mesh_vertices = morton_order(&positions, scaled(low, shift), scaled(high, shift));
+        let mesh_vertices = if in_order {
+            (0..positions.len() as u32).collect()
+        } else {
+            morton_order(&positions, scaled(low, shift), scaled(high, shift))
+        };
         let mut surface_vertices = vec![0; mesh_vertices.len()];
         for (i, &v) in mesh_vertices.iter().enumerate() {
             surface_vertices[v as usize] = i as u32;
@@ -64,7 +77,7 @@ impl Surface {
             || Adjacency::new(mesh_vertices.len(), &triangles),
             || set_normals(&mut vertices, &triangles, normals),
         );
-        Some(Self { triangles, adjacency, vertices, mesh_vertices, unit })
+        Some(Self { triangles, adjacency, vertices, mesh_vertices, unit, selected: None })
     }
 
     pub(super) fn num_vertices(&self) -> usize {
@@ -74,6 +87,27 @@ impl Surface {
     /// The vertex of the mesh.
     pub(super) fn mesh_vertex(&self, vertex: u32) -> usize {
         self.mesh_vertices[vertex as usize] as usize
+    }
+
+    /// Evaluates only these vertices of the mesh from now on.
+    pub(super) fn select(&mut self, places: &[u32]) {
+        let mut vertex_of = vec![0; self.mesh_vertices.len()];
+        self.mesh_vertices.iter().zip(0..).for_each(|(&place, v)| vertex_of[place as usize] = v);
+        self.selected = Some(places.iter().map(|&place| vertex_of[place as usize]).collect());
+    }
+
+    pub(super) fn select_all(&mut self) {
+        self.selected = None;
+    }
+
+    /// Number of vertices that are to be evaluated.
+    pub(super) fn num_selected(&self) -> usize {
+        self.selected.as_ref().map_or(self.num_vertices(), Vec::len)
+    }
+
+    /// One of them.
+    pub(super) fn selected(&self, i: usize) -> usize {
+        self.selected.as_ref().map_or(i, |selected| selected[i] as usize)
     }
 
     /// Puts one value per vertex back into the order of the mesh.

@@ -61,19 +61,19 @@ pub(super) struct LocalWindow<'a> {
     dz: Vec<f64>,
 }
 
-/// Calls `value` with the window of every vertex that has one, and collects what it returns.
+/// Calls `value` with the window of every selected vertex that has one, and collects what it returns.
 pub(super) fn map_windows<T: Clone + Default + Send>(
     surface: &Surface,
     window: &Window,
     progress: &(dyn Fn(usize) + Sync),
     value: impl Fn(&mut LocalWindow) -> T + Sync,
 ) -> Vec<T> {
-    let mut values = vec![T::default(); surface.num_vertices()];
+    let mut values = vec![T::default(); surface.num_selected()];
     values.par_chunks_mut(BLOCK).enumerate().for_each_init(
         || LocalWindow::new(surface, window),
         |local, (block, values)| {
             for (i, slot) in values.iter_mut().enumerate() {
-                let v = block * BLOCK + i;
+                let v = surface.selected(block * BLOCK + i);
                 if !surface.adjacency.of(v).is_empty() {
                     local.gather(v);
                     *slot = value(local);

@@ -98,5 +98,15 @@ fn settings(options: &EncodeOptions, attempt: Attempt) -> Settings {
     let EncodeOptions { descriptor, window, growth, partition, optimize, .. } = *options;
     let Attempt { levels, max_valence } = attempt;
     let is_hasty = options.effort < EncodeOptions::LOW_EFFORT;
-    Settings { descriptor, window, growth, levels, partition, optimize, is_hasty, max_valence }
+    Settings {
+        descriptor,
+        window,
+        growth,
+        levels,
+        partition,
+        optimize,
+        is_hasty,
+        in_order: true,
+        max_valence,
+    }
 }

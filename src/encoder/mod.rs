@@ -8,6 +8,7 @@ mod order;
 pub(crate) mod quantise;
 mod scale;
 mod schedule;
+mod scout;
 mod signatures;
 mod trailing;
 mod values;

@@ -62,8 +62,7 @@ pub(super) fn order(
         sorted.iter().zip(0..).for_each(|(&old, new)| place[old as usize] = new);
         usable.iter_mut().for_each(|(_, t)| *t = t.map(|v| place[v as usize]));
     }
-    let mut turned: Vec<([u32; 3], u32)> = usable.par_iter().map(|&(face, t)| turned(t, face)).collect();
-    turned.par_sort_unstable();
+    let mut turned = sorted(usable, vertex_source.len());
     let has_repeated = turned.windows(2).any(|pair| pair[0].0 == pair[1].0);
     if has_repeated && let Some(signatures) = signatures() {
         turned.sort_by_cached_key(|&(t, corner)| (t, signatures.triangle(corner), corner));
@@ -74,6 +73,24 @@ pub(super) fn order(
         corner_source: turned.iter().map(|&(_, corner)| corner).collect(),
     };
     (ordered, turned.into_iter().map(|(t, _)| t).collect())
+}
+
+/// Triangles from their smallest vertex on, ascending, each with the corner there.
+fn sorted(usable: Vec<(u32, [u32; 3])>, num_vertices: usize) -> Vec<([u32; 3], u32)> {
+    // Few share their first vertex: they are counted out by it, and each group is put in order.
+    let turned: Vec<([u32; 3], u32)> = usable.par_iter().map(|&(face, t)| turned(t, face)).collect();
+    drop(usable);
+    let mut ends = vec![0_u32; num_vertices + 1];
+    turned.iter().for_each(|&([v, ..], _)| ends[v as usize + 1] += 1);
+    (0..num_vertices).for_each(|v| ends[v + 1] += ends[v]);
+    let mut sorted = vec![([0; 3], 0); turned.len()];
+    for triangle in turned {
+        let end = &mut ends[triangle.0[0] as usize];
+        sorted[*end as usize] = triangle;
+        *end += 1;
+    }
+    sorted.chunk_by_mut(|(t, _), (u, _)| t[0] == u[0]).for_each(<[_]>::sort_unstable);
+    sorted
 }
 
 /// A triangle from its smallest vertex on, and which corner that is.

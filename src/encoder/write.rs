@@ -5,6 +5,7 @@ use super::attribute_writer::AttributeWriter;
 use super::attributes::Quantised;
 use super::options::Progress;
 use super::schedule::{Schedule, Step};
+use super::scout::{Found, Names, Scout};
 use super::trailing::{Exact, Written};
 use super::{expect_sound, padded};
 use crate::Profile;
@@ -12,12 +13,10 @@ use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::header::{Action, Header, MAX_VERTICES_PER_BYTE, Pass, Provenance};
 use crate::bitstream::pass_table;
-use crate::bitstream::range_coder::{BitCoder, RangeEncoder};
+use crate::bitstream::range_coder::RangeEncoder;
 use crate::bitstream::streams::StreamWriter;
-use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::passes::GridMesh;
 use crate::passes::base::{self, BaseTarget};
-use crate::passes::connectivity::{self, ConnectivityModels, ConnectivityTarget, NOT_IN_PATCH};
 use crate::passes::coordinates::{self, CoordinateModels};
 use crate::passes::glue::{self, GlueModels};
 use crate::passes::patch::{Patches, Star, StarBuilder};
@@ -26,7 +25,6 @@ use crate::passes::refine::{self, RefineModels};
 use crate::passes::work::Work;
 use crate::simplify::LevelRecord;
 use bitvec::vec::BitVec;
-use std::collections::HashMap;
 
 /// Materials of at most this many bytes stand in front of the passes: the base mesh should not have to wait for
 /// pictures.
@@ -41,22 +39,49 @@ pub(super) fn write(
     schedule: &Schedule,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Vec<u8> {
-    let mut writer = PassWriter::new(hierarchy, cells, attributes, exact, schedule.base_precision);
-    for step in &schedule.steps {
+    let (mut writer, mut names) =
+        PassWriter::new(hierarchy, cells, attributes, exact, schedule.base_precision);
+    let mut scout = Scout::new(hierarchy.num_faces);
+    let is_split = |step: &&Step| matches!(step, Step::Split(_));
+    let num_first = schedule.steps.iter().take_while(|step| !is_split(step)).count();
+    let (first, rest) = schedule.steps.split_at(num_first);
+    first.iter().for_each(|_| writer.refine(&names));
+    // Each split with the refinements behind it.
+    let mut groups = rest.chunk_by(|_, after| !is_split(&after)).peekable();
+    let mut found = None;
+    while let Some(group) = groups.next() {
         let fraction = writer.mesh.positions.len() as f64 / hierarchy.num_vertices as f64;
         progress(Progress { stage: "passes", fraction: ANALYSIS_SHARE + (1.0 - ANALYSIS_SHARE) * fraction });
-        match *step {
-            Step::Split(record) => writer.split(&hierarchy.records[record]),
-            Step::Refine => writer.refine(),
+        let record_of = |group: &[Step]| match group[0] {
+            Step::Split(record) => Some(&hierarchy.records[record]),
+            Step::Refine => None,
+        };
+        let Some(record) = record_of(group) else { continue };
+        let num_refinements = group.len() - 1;
+        if writer.profile == Profile::Fast {
+            writer.split_in_streams(record, &mut names, &mut scout);
+            (0..num_refinements).for_each(|_| writer.refine(&names));
+            continue;
         }
+        let found_now = found.take().unwrap_or_else(|| scout.find(&writer.mesh, &names, record));
+        writer.restore(record, &found_now.patches, &found_now.odd, &mut names, |_, _, _, _| ());
+        let after = groups.peek().and_then(|group| record_of(group));
+        if after.is_some() {
+            scout.follow(&writer.mesh.surface);
+        }
+        let hidden = writer.full_precision - writer.precision - num_refinements as u32;
+        // Which vertices come next does not depend on how these are coded, only on where they are.
+        let finish = || {
+            writer.split(record, found_now, &names);
+            (0..num_refinements).for_each(|_| writer.refine(&names));
+        };
+        let go_ahead = || after.map(|record| scout.find_ahead(cells, hidden, &names, record));
+        ((), found) = rayon::join(finish, go_ahead);
     }
     debug_assert_eq!(writer.mesh.surface.triangles.len(), hierarchy.num_faces);
-    let surface = Written {
-        mesh: &writer.mesh,
-        vertex_source: &writer.vertex_source,
-        face_source: &writer.face_source,
-        rows: writer.attributes.rows(),
-    };
+    let Names { vertex_source, face_source } = &names;
+    let rows = writer.attributes.rows();
+    let surface = Written { mesh: &writer.mesh, vertex_source, face_source, rows };
     let mut trailing = exact.trailing(&surface, writer.roots);
     let is_large = |payload: &&Vec<u8>| payload.len() > MOST_IN_FRONT;
     trailing.extend(attributes.materials.iter().filter(is_large).map(|m| (kind::MATERIALS, m.clone())));
@@ -134,23 +159,16 @@ struct WrittenPass {
     glue: Option<Vec<u8>>,
 }
 
-/// The decoder's state, and how its numbering maps to that of the full surface.
+/// The decoder's state.
 struct PassWriter<'a> {
     cells: &'a [[i32; 3]],
     profile: Profile,
     full_precision: u32,
     precision: u32,
     mesh: GridMesh,
-    /// Vertex of the full surface that each vertex is.
-    vertex_source: Vec<u32>,
-    /// Slot of the full surface that each triangle has.
-    face_source: Vec<u32>,
-    connectivity: ConnectivityModels,
     coordinates: CoordinateModels,
     refine: RefineModels,
     attributes: AttributeWriter<'a>,
-    /// Scratch: patch of each slot of the full surface.
-    patch_of_slot: Vec<u32>,
     passes: Vec<WrittenPass>,
     /// Vertex of the joined surface for each vertex of the full one.
     source: &'a [u32],
@@ -169,7 +187,7 @@ impl<'a> PassWriter<'a> {
         attributes: &'a Quantised,
         exact: &Exact<'a>,
         precision: u32,
-    ) -> Self {
+    ) -> (Self, Names) {
         let full_precision = exact.grid.precision;
         let profile = exact.options.profile;
         let hidden = full_precision - precision;
@@ -180,23 +198,20 @@ impl<'a> PassWriter<'a> {
         let mut coder = RangeEncoder::new();
         let coded = base::code(&mut coder, num_vertices, num_faces, precision, Some(&target));
         let coded = expect_sound(coded);
+        let faces = coded.corner_source.iter().map(|&c| c / 3);
+        let names = Names {
+            vertex_source: coded.vertex_source.iter().map(|&v| hierarchy.base_vertices[v as usize]).collect(),
+            face_source: faces.map(|face| hierarchy.base_faces[face as usize]).collect(),
+        };
         let mut writer = Self {
             cells,
             profile,
             full_precision,
             precision,
             mesh: coded.mesh,
-            vertex_source: coded.vertex_source.iter().map(|&v| hierarchy.base_vertices[v as usize]).collect(),
-            face_source: coded
-                .corner_source
-                .iter()
-                .map(|&c| hierarchy.base_faces[(c / 3) as usize])
-                .collect(),
-            connectivity: ConnectivityModels::new(),
             coordinates: CoordinateModels::new(),
             refine: RefineModels::new(),
             attributes: AttributeWriter::new(attributes),
-            patch_of_slot: vec![NOT_IN_PATCH; hierarchy.num_faces],
             passes: Vec::new(),
             source: exact.source,
             glue: GlueModels::default(),
@@ -212,41 +227,40 @@ impl<'a> PassWriter<'a> {
             faces: num_faces as u32,
             bytes: 0,
         };
-        writer.finish_pass(row, num_vertices.max(num_faces), coder.finish());
-        let Self { mesh, vertex_source, face_source, attributes, .. } = &mut writer;
-        attributes.base(mesh, hierarchy, vertex_source, face_source);
-        writer
+        writer.finish_pass(row, num_vertices.max(num_faces), coder.finish(), &names);
+        writer.attributes.base(&writer.mesh, hierarchy, &names.vertex_source, &names.face_source);
+        (writer, names)
     }
 
-    fn finish_pass(&mut self, mut row: Pass, touched: usize, payload: Vec<u8>) {
+    fn finish_pass(&mut self, mut row: Pass, touched: usize, payload: Vec<u8>, names: &Names) {
         let payload = padded(payload, touched as u64, u64::from(MAX_VERTICES_PER_BYTE));
         row.bytes = payload.len() as u32;
-        let glue = self.glue_of_new_vertices();
+        let glue = self.glue_of_new_vertices(&names.vertex_source);
         self.passes.push(WrittenPass { row, payload, glue });
     }
 
     /// Payload of the glue behind a pass, if one of its vertices is the same as one that is there.
-    fn glue_of_new_vertices(&mut self) -> Option<Vec<u8>> {
+    fn glue_of_new_vertices(&mut self, vertex_source: &[u32]) -> Option<Vec<u8>> {
         let num_old = self.num_seen;
-        self.num_seen = self.vertex_source.len();
+        self.num_seen = vertex_source.len();
         let mut is_glued = false;
-        for &v in &self.vertex_source[num_old..] {
+        for &v in &vertex_source[num_old..] {
             is_glued |= self.has_come.replace(self.source[v as usize] as usize, true);
         }
         if !is_glued {
             return None;
         }
-        let names: Vec<u32> = self.vertex_source.iter().map(|&v| self.source[v as usize]).collect();
+        let names: Vec<u32> = vertex_source.iter().map(|&v| self.source[v as usize]).collect();
         let mut coder = RangeEncoder::new();
         expect_sound(glue::code(&mut coder, &mut self.glue, &self.mesh, &mut self.roots, Some(&names)));
         Some(coder.finish())
     }
 
-    fn refine(&mut self) {
+    fn refine(&mut self, names: &Names) {
         self.precision += 1;
         let hidden = self.full_precision - self.precision;
         let target: Vec<[i32; 3]> =
-            self.vertex_source.iter().map(|&v| self.cells[v as usize].map(|c| c >> hidden)).collect();
+            names.vertex_source.iter().map(|&v| self.cells[v as usize].map(|c| c >> hidden)).collect();
         let payload = match self.profile {
             Profile::Small => {
                 let mut coder = RangeEncoder::new();
@@ -263,101 +277,70 @@ impl<'a> PassWriter<'a> {
         };
         debug_assert_eq!(self.mesh.positions, target);
         let row = Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 0 };
-        self.finish_pass(row, target.len(), payload);
+        self.finish_pass(row, target.len(), payload, names);
         self.attributes.refine();
     }
 
-    fn split(&mut self, record: &LevelRecord) {
-        let num_faces = self.mesh.surface.triangles.len();
-        let num_coarse = self.mesh.positions.len();
-        let (patches, payload) = match self.profile {
-            Profile::Small => {
-                let mut coder = RangeEncoder::new();
-                (self.split_with(&mut coder, record), coder.finish())
-            }
-            Profile::Fast => {
-                let mut coder = StreamWriter::new(record.len() as u32);
-                (self.split_with(&mut coder, record), coder.finish())
-            }
-        };
-        let row = Pass {
-            action: Action::Split,
-            vertices: record.len() as u32,
-            faces: (self.mesh.surface.triangles.len() - num_faces) as u32,
-            bytes: 0,
-        };
-        self.finish_pass(row, record.len(), payload);
-        self.attributes.split(&self.mesh, &patches, num_coarse, &self.vertex_source);
+    /// Codes where the vertices of `record` are, which have been brought back.
+    fn split(&mut self, record: &LevelRecord, found: Found, names: &Names) {
+        let Found { mut coder, patches, odd } = found;
+        let (wanted, precision) = (self.wanted(record, &odd), self.precision);
+        let (models, mesh) = (&mut self.coordinates, &mut self.mesh);
+        expect_sound(coordinates::code(&mut coder, models, mesh, &patches, precision, Some(&wanted)));
+        self.finish_split(&patches, coder.finish(), names);
     }
 
-    fn split_with<B: BitCoder>(&mut self, coder: &mut B, record: &LevelRecord) -> Patches {
-        let target = self.connectivity_target(record);
-        let (models, mesh) = (&mut self.connectivity, &self.mesh);
-        let patches = expect_sound(connectivity::code(coder, models, mesh, record.len(), Some(&target)));
-        let odd: Vec<u32> = (0..patches.len()).map(|j| odd_of(&target, &patches, j)).collect();
-        drop(target);
+    fn split_in_streams(&mut self, record: &LevelRecord, names: &mut Names, scout: &mut Scout) {
+        let mut coder = StreamWriter::new(record.len() as u32);
+        let (patches, odd) = scout.find_with(&mut coder, &self.mesh, names, record);
+        let (wanted, limit) = (self.wanted(record, &odd), 1 << self.precision);
+        self.restore(record, &patches, &odd, names, |mesh, patches, j, star| {
+            let GridMesh { positions, roughness, .. } = mesh;
+            let mut known = Located { positions, roughness };
+            expect_sound(plain::code_vertex(&mut coder, &mut known, patches, j, star, limit, wanted[j]));
+        });
+        self.finish_split(&patches, coder.finish(), names);
+    }
 
+    /// Cells of the vertices that the patches bring back.
+    fn wanted(&self, record: &LevelRecord, odd: &[u32]) -> Vec<[i32; 3]> {
         let hidden = self.full_precision - self.precision;
         let sources = odd.iter().map(|&o| record.get(o as usize).vertex);
-        let wanted: Vec<[i32; 3]> = sources.map(|v| self.cells[v as usize].map(|c| c >> hidden)).collect();
-        let mut builder = StarBuilder::new(self.mesh.positions.len());
+        sources.map(|v| self.cells[v as usize].map(|c| c >> hidden)).collect()
+    }
+
+    /// Brings the vertices back, the entries `odd` of the record, and tells `see` of each star.
+    fn restore(
+        &mut self,
+        record: &LevelRecord,
+        patches: &Patches,
+        odd: &[u32],
+        names: &mut Names,
+        mut see: impl FnMut(&mut GridMesh, &Patches, usize, &Star),
+    ) {
+        let mut builder = StarBuilder::new(self.mesh.surface.corner_of.len());
         for (j, &odd) in odd.iter().enumerate() {
-            let star = expect_sound(builder.restore(&mut self.mesh.surface, &patches, j));
+            let star = expect_sound(builder.restore(&mut self.mesh.surface, patches, j));
             let removed = record.get(odd as usize);
-            self.face_source.resize(self.mesh.surface.triangles.len(), 0);
-            let shift = name_faces(star, &removed, &self.vertex_source, &mut self.face_source);
+            names.face_source.resize(self.mesh.surface.triangles.len(), 0);
+            let shift = name_faces(star, &removed, &names.vertex_source, &mut names.face_source);
             self.attributes.restore(star, record, &removed, shift);
-            if B::HAS_STREAMS {
-                let GridMesh { positions, roughness, .. } = &mut self.mesh;
-                let (mut known, limit) = (Located { positions, roughness }, 1 << self.precision);
-                expect_sound(plain::code_vertex(coder, &mut known, &patches, j, star, limit, wanted[j]));
-            }
+            see(&mut self.mesh, patches, j, star);
         }
-        self.vertex_source.extend(odd.iter().map(|&o| record.get(o as usize).vertex));
-        if !B::HAS_STREAMS {
-            let (models, mesh) = (&mut self.coordinates, &mut self.mesh);
-            expect_sound(coordinates::code(coder, models, mesh, &patches, self.precision, Some(&wanted)));
-        }
-        patches
+        names.vertex_source.extend(odd.iter().map(|&o| record.get(o as usize).vertex));
     }
 
-    /// Translates a record into the decoder's numbering.
-    fn connectivity_target(&mut self, record: &LevelRecord) -> ConnectivityTarget {
-        let mut open: HashMap<(u32, u32), u32> = HashMap::new();
-        for (odd, removed) in record.iter().enumerate() {
-            removed.patch().iter().for_each(|&slot| self.patch_of_slot[slot as usize] = odd as u32);
-            if !removed.is_closed() {
-                let last = removed.ring[removed.ring.len() - 1];
-                open.insert((last, removed.ring[0]), odd as u32);
-            }
-        }
-        let patch_of_face = self.face_source.iter().map(|&s| self.patch_of_slot[s as usize]).collect();
-        record
-            .iter()
-            .for_each(|r| r.patch().iter().for_each(|&s| self.patch_of_slot[s as usize] = NOT_IN_PATCH));
-
-        let mut target = ConnectivityTarget { patch_of_face, ..Default::default() };
-        let surface = &self.mesh.surface;
-        if !open.is_empty() {
-            for corner in (0..surface.opposite.len() as u32).filter(|&c| surface.across(c) == NO_CORNER) {
-                let [from, to] =
-                    [next(corner), prev(corner)].map(|c| self.vertex_source[surface.vertex(c) as usize]);
-                if let Some(&odd) = open.get(&(from, to)) {
-                    let is_ear = record.get(odd as usize).patch().is_empty();
-                    let map = if is_ear { &mut target.ear_at } else { &mut target.patch_open_at };
-                    map.insert(corner, odd);
-                }
-            }
-        }
-        target
-    }
-}
-
-/// The record entry that a patch stands for.
-fn odd_of(target: &ConnectivityTarget, patches: &Patches, patch: usize) -> u32 {
-    match patches.faces(patch).first() {
-        Some(&face) => target.patch_of_face[face as usize],
-        None => target.ear_at[&patches.edges(patch)[0]],
+    fn finish_split(&mut self, patches: &Patches, payload: Vec<u8>, names: &Names) {
+        let num_vertices = patches.len();
+        let num_coarse = self.mesh.positions.len() - num_vertices;
+        let row = Pass {
+            action: Action::Split,
+            vertices: num_vertices as u32,
+            faces: patches.num_new_faces() as u32,
+            bytes: 0,
+        };
+        self.finish_pass(row, num_vertices, payload, names);
+        self.attributes.split(&self.mesh, patches, num_coarse, &names.vertex_source);
     }
 }
 

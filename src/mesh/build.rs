@@ -1,6 +1,5 @@
 //! From triangles to a [`Surface`]: adjacency by sorting, and the checks that make it one.
 
-use super::corners_at::CornersAt;
 use super::surface::{NO_CORNER, Surface, next, prev};
 use super::tri_mesh::has_three_vertices;
 use thiserror::Error;
@@ -25,28 +24,37 @@ impl Surface {
     /// # Errors
     /// If the triangles are not an oriented 2-manifold (with boundary) that uses each vertex.
     pub fn from_triangles(triangles: Vec<[u32; 3]>, num_vertices: usize) -> Result<Self, SurfaceError> {
+        Self::try_from_triangles(triangles, num_vertices).map_err(|(_, error)| error)
+    }
+
+    /// As [`from_triangles`](Self::from_triangles), with the triangles back if they are no surface.
+    pub(super) fn try_from_triangles(
+        triangles: Vec<[u32; 3]>,
+        num_vertices: usize,
+    ) -> Result<Self, (Vec<[u32; 3]>, SurfaceError)> {
         let mut surface = Surface {
             opposite: vec![NO_CORNER; 3 * triangles.len()],
             corner_of: vec![NO_CORNER; num_vertices],
             valence: vec![0; num_vertices],
             triangles,
         };
-        if let Some(f) = surface.triangles.iter().position(|t| !has_three_vertices(t)) {
-            return Err(SurfaceError::Degenerate(f as u32));
+        match surface.link_all().and_then(|()| surface.count_fans()) {
+            Ok(()) => Ok(surface),
+            Err(error) => Err((surface.triangles, error)),
         }
-        surface.link_all()?;
-        surface.count_fans()?;
-        Ok(surface)
     }
 
     fn link_all(&mut self) -> Result<(), SurfaceError> {
+        if let Some(f) = self.triangles.iter().position(|t| !has_three_vertices(t)) {
+            return Err(SurfaceError::Degenerate(f as u32));
+        }
         let edges = EdgeIndex::new(&self.triangles, self.corner_of.len());
         for corner in 0..self.opposite.len() as u32 {
             let (from, to) = (self.vertex(next(corner)), self.vertex(prev(corner)));
-            if edges.facing(&self.triangles, from, to).len() > 1 {
+            if edges.facing(from, to).nth(1).is_some() {
                 return Err(SurfaceError::RepeatedEdge(from, to));
             }
-            if let Some(&twin) = edges.facing(&self.triangles, to, from).first() {
+            if let Some(twin) = edges.facing(to, from).next() {
                 self.opposite[corner as usize] = twin;
             }
         }
@@ -77,30 +85,57 @@ impl Surface {
     }
 }
 
-/// Corners sorted by the directed edge they face: of each vertex those that face edges from it.
-pub(crate) struct EdgeIndex(CornersAt);
-
-impl EdgeIndex {
-    pub(crate) fn new(triangles: &[[u32; 3]], num_vertices: usize) -> Self {
-        let mut from = CornersAt::new(triangles, num_vertices);
-        for v in 0..num_vertices as u32 {
-            let corners = from.at_mut(v);
-            corners.iter_mut().for_each(|c| *c = prev(*c));
-            corners.sort_unstable_by_key(|&c| (vertex_at(triangles, prev(c)), c));
-        }
-        Self(from)
-    }
-
-    /// The corners that face an edge from `from` to `to`, in ascending order. `triangles` are those
-    /// the index was made of.
-    pub(crate) fn facing(&self, triangles: &[[u32; 3]], from: u32, to: u32) -> &[u32] {
-        let group = self.0.at(from);
-        let start = group.partition_point(|&c| vertex_at(triangles, prev(c)) < to);
-        let end = start + group[start..].partition_point(|&c| vertex_at(triangles, prev(c)) == to);
-        &group[start..end]
-    }
+/// A corner and the vertex to which the edge runs that it faces.
+#[derive(Clone, Copy, Default)]
+struct Facing {
+    to: u32,
+    corner: u32,
 }
 
-fn vertex_at(triangles: &[[u32; 3]], corner: u32) -> u32 {
-    triangles[(corner / 3) as usize][(corner % 3) as usize]
+/// Corners by the directed edge they face: of each vertex those that face edges from it.
+pub(crate) struct EdgeIndex {
+    /// Where those of each vertex begin.
+    first: Vec<u32>,
+    facing: Vec<Facing>,
+}
+
+/// Groups up to this length are searched one by one; longer ones are sorted, as one vertex may have all faces.
+const SHORT_GROUP: usize = 16;
+
+impl EdgeIndex {
+    /// `triangles` do not repeat a vertex.
+    pub(crate) fn new(triangles: &[[u32; 3]], num_vertices: usize) -> Self {
+        let mut first = vec![0_u32; num_vertices + 1];
+        triangles.as_flattened().iter().for_each(|&v| first[v as usize + 1] += 1);
+        (0..num_vertices).for_each(|v| first[v + 1] += first[v]);
+        let mut end = first[..num_vertices].to_vec();
+        let mut facing = vec![Facing::default(); 3 * triangles.len()];
+        for (&[a, b, c], corner) in triangles.iter().zip((0..).step_by(3)) {
+            for (from, to, corner) in [(b, c, corner), (c, a, corner + 1), (a, b, corner + 2)] {
+                let end = &mut end[from as usize];
+                facing[*end as usize] = Facing { to, corner };
+                *end += 1;
+            }
+        }
+        for v in 0..num_vertices {
+            let group = &mut facing[first[v] as usize..first[v + 1] as usize];
+            if group.len() > SHORT_GROUP {
+                group.sort_unstable_by_key(|f| (f.to, f.corner));
+            }
+        }
+        Self { first, facing }
+    }
+
+    /// The corners that face an edge from `from` to `to`, in ascending order.
+    pub(crate) fn facing(&self, from: u32, to: u32) -> impl Iterator<Item = u32> {
+        let [start, end] = [from as usize, from as usize + 1].map(|v| self.first[v] as usize);
+        let mut group = &self.facing[start..end];
+        if group.len() > SHORT_GROUP {
+            let start = group.partition_point(|f| f.to < to);
+            group = &group[start..];
+            group = &group[..group.partition_point(|f| f.to == to)];
+        }
+        // Faces were met in ascending order, and each faces an edge from a vertex once.
+        group.iter().filter(move |f| f.to == to).map(|f| f.corner)
+    }
 }

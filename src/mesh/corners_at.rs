@@ -23,16 +23,6 @@ impl CornersAt {
     }
 
     pub(crate) fn at(&self, v: u32) -> &[u32] {
-        &self.corners[self.range(v)]
-    }
-
-    /// Those of a vertex, to be put in another order.
-    pub(super) fn at_mut(&mut self, v: u32) -> &mut [u32] {
-        let range = self.range(v);
-        &mut self.corners[range]
-    }
-
-    fn range(&self, v: u32) -> std::ops::Range<usize> {
-        self.first[v as usize] as usize..self.first[v as usize + 1] as usize
+        &self.corners[self.first[v as usize] as usize..self.first[v as usize + 1] as usize]
     }
 }

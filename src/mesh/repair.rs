@@ -48,6 +48,11 @@ pub(crate) fn repair(mesh: &TriMesh) -> Repaired {
 /// Cuts triangles of three different vertices each into sheets: the surface, whose faces keep their order and
 /// rotation, and for each vertex of it the vertex it stands for, ascending.
 pub(crate) fn cut(triangles: Vec<[u32; 3]>, num_vertices: usize) -> (Surface, Vec<u32>) {
+    // Most meshes are a surface as they are.
+    let triangles = match Surface::try_from_triangles(triangles, num_vertices) {
+        Ok(surface) => return (surface, (0..num_vertices as u32).collect()),
+        Err((triangles, _)) => triangles,
+    };
     let mut opposite = pair_edges(&triangles, num_vertices);
     loop {
         let (cut, source) = name_fans(&triangles, &opposite);
@@ -77,11 +82,10 @@ fn pair_edges(triangles: &[[u32; 3]], num_vertices: usize) -> Vec<u32> {
         if from > to {
             continue;
         }
-        let forward = edges.facing(triangles, from, to);
-        if forward.first() != Some(&corner) {
+        if edges.facing(from, to).next() != Some(corner) {
             continue;
         }
-        for (&a, &b) in forward.iter().zip(edges.facing(triangles, to, from)) {
+        for (a, b) in edges.facing(from, to).zip(edges.facing(to, from)) {
             opposite[a as usize] = b;
             opposite[b as usize] = a;
         }
@@ -129,7 +133,7 @@ fn clashing_faces(triangles: &[[u32; 3]], num_vertices: usize) -> Vec<u32> {
         .filter(|&corner| {
             let t = triangles[(corner / 3) as usize];
             let (from, to) = (t[(next(corner) % 3) as usize], t[(prev(corner) % 3) as usize]);
-            edges.facing(triangles, from, to).first() != Some(&corner)
+            edges.facing(from, to).next() != Some(corner)
         })
         .map(|corner| corner / 3)
         .collect();

@@ -3,31 +3,61 @@
 use glam::DVec3;
 
 /// Squared distance from `p` to a triangle: to its plane if `p` projects inside, else to the nearest edge.
-pub(crate) fn squared_distance(p: DVec3, [a, b, c]: &[DVec3; 3]) -> f64 {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let normal = ab.cross(ac);
-    let normal_squared = normal.length_squared();
-    // The sine of the angle at `a`, squared. A sliver's normal is noise; its edges are as near as it is.
-    let is_sliver = normal_squared <= 1e-20 * ab.length_squared() * ac.length_squared();
-    if !is_sliver {
-        // Barycentric coordinates of the projection, times the squared normal.
-        let of_c = ab.cross(ap).dot(normal);
-        let of_b = ap.cross(ac).dot(normal);
-        if of_b >= 0.0 && of_c >= 0.0 && of_b + of_c <= normal_squared {
-            let height = ap.dot(normal);
-            return height * height / normal_squared;
-        }
+#[cfg(any(feature = "metrics", test))]
+pub(crate) fn squared_distance(p: DVec3, triangle: &[DVec3; 3]) -> f64 {
+    Triangle::new(triangle).squared_distance(p)
+}
+
+/// A triangle to which many distances are asked.
+pub(crate) struct Triangle {
+    a: DVec3,
+    b: DVec3,
+    ab: DVec3,
+    ac: DVec3,
+    bc: DVec3,
+    squared_lengths: [f64; 3],
+    normal: DVec3,
+    normal_squared: f64,
+    is_sliver: bool,
+}
+
+impl Triangle {
+    #[inline]
+    pub(crate) fn new(&[a, b, c]: &[DVec3; 3]) -> Self {
+        let (ab, ac, bc) = (b - a, c - a, c - b);
+        let squared_lengths = [ab, ac, bc].map(DVec3::length_squared);
+        let normal = ab.cross(ac);
+        let normal_squared = normal.length_squared();
+        // The sine of the angle at `a`, squared. A sliver's normal is noise; its edges are as near as it is.
+        let is_sliver = normal_squared <= 1e-20 * squared_lengths[0] * squared_lengths[1];
+        Self { a, b, ab, ac, bc, squared_lengths, normal, normal_squared, is_sliver }
     }
-    let to_ab = squared_distance_to_segment(ap, ab);
-    let to_ac = squared_distance_to_segment(ap, ac);
-    let to_bc = squared_distance_to_segment(p - b, c - b);
-    to_ab.min(to_ac).min(to_bc)
+
+    /// Squared distance from `p`.
+    #[inline]
+    pub(crate) fn squared_distance(&self, p: DVec3) -> f64 {
+        let &Self { a, b, ab, ac, bc, squared_lengths, normal, normal_squared, is_sliver } = self;
+        let ap = p - a;
+        if !is_sliver {
+            // Barycentric coordinates of the projection, times the squared normal.
+            let of_c = ab.cross(ap).dot(normal);
+            let of_b = ap.cross(ac).dot(normal);
+            if of_b >= 0.0 && of_c >= 0.0 && of_b + of_c <= normal_squared {
+                let height = ap.dot(normal);
+                return height * height / normal_squared;
+            }
+        }
+        let to_ab = squared_distance_to_segment(ap, ab, squared_lengths[0]);
+        let to_ac = squared_distance_to_segment(ap, ac, squared_lengths[1]);
+        let to_bc = squared_distance_to_segment(p - b, bc, squared_lengths[2]);
+        to_ab.min(to_ac).min(to_bc)
+    }
 }
 
 /// Squared distance from `p` to the segment from the origin to `end`, which may be the origin.
-fn squared_distance_to_segment(p: DVec3, end: DVec3) -> f64 {
+#[inline]
+fn squared_distance_to_segment(p: DVec3, end: DVec3, length_squared: f64) -> f64 {
     let along = p.dot(end);
-    let length_squared = end.length_squared();
     if along <= 0.0 || length_squared == 0.0 {
         p.length_squared()
     } else if along >= length_squared {

@@ -46,10 +46,14 @@ impl CollapseTest {
 
 /// Legality of the collapse of the star's vertex into `ring[target]`.
 pub(crate) fn is_legal(surface: &ShrinkingSurface, star: &Star, target: usize, grid: &[[i32; 3]]) -> bool {
+    makes_new_edges(surface, star, target) && keeps_sides(star, target, grid)
+}
+
+/// Whether the collapse leaves a surface. Removals of other vertices change that.
+pub(crate) fn makes_new_edges(surface: &ShrinkingSurface, star: &Star, target: usize) -> bool {
     let degree = star.degree();
     let u = star.ring[target];
     let others = |offset: usize| star.ring[(target + offset) % degree];
-    let cell = |v: u32| grid[v as usize];
 
     if star.is_closed() {
         // Three faces become one, which must not be there already on the other side.
@@ -64,15 +68,21 @@ pub(crate) fn is_legal(surface: &ShrinkingSurface, star: &Star, target: usize, g
     // neighbour along the new boundary.
     let last_new = if star.is_closed() { degree - 2 } else { degree - 1 };
     let new_edges = if star.is_closed() || target == 0 { 2..last_new + 1 } else { 1..last_new };
-    let blocked = new_edges.into_iter().any(|i| surface.has_edge(u, others(i)));
-    if blocked {
-        return false;
-    }
-    (1..degree - 1).all(|i| {
-        let (a, b) = (others(i), others(i + 1));
-        let before = area_vector(cell(star.vertex), cell(a), cell(b));
-        before == [0; 3] || is_same_side(before, area_vector(cell(u), cell(a), cell(b)))
-    })
+    !new_edges.into_iter().any(|i| surface.has_edge(u, others(i)))
+}
+
+/// Whether every face that stays keeps its side. Only removals of neighbours change that.
+pub(crate) fn keeps_sides(star: &Star, target: usize, grid: &[[i32; 3]]) -> bool {
+    let degree = star.degree();
+    let u = star.ring[target];
+    let others = |offset: usize| star.ring[(target + offset) % degree];
+    let cell = |v: u32| grid[v as usize];
+    degree == 2
+        || (1..degree - 1).all(|i| {
+            let (a, b) = (others(i), others(i + 1));
+            let before = area_vector(cell(star.vertex), cell(a), cell(b));
+            before == [0; 3] || is_same_side(before, area_vector(cell(u), cell(a), cell(b)))
+        })
 }
 
 /// True if a face outside the closed star of degree three has the same three vertices.

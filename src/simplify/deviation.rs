@@ -1,7 +1,7 @@
 //! How far a triangulated hole lies from the star that was there.
 
 use super::Star;
-use crate::mesh::triangle::squared_distance;
+use crate::mesh::triangle::Triangle;
 use glam::DVec3;
 
 /// Scratch space.
@@ -11,7 +11,7 @@ pub(super) struct Deviation {
     samples: Vec<DVec3>,
     ring: Vec<DVec3>,
     left: Vec<usize>,
-    triangles: Vec<[DVec3; 3]>,
+    triangles: Vec<Triangle>,
 }
 
 impl Deviation {
@@ -33,21 +33,39 @@ impl Deviation {
     /// Sum of the squared distances of the star's samples, its vertex counting twice, from the
     /// triangles that cutting `ears` makes; or something above `bound` if that is above it.
     pub(super) fn of(&mut self, ears: impl Iterator<Item = usize>, bound: f64) -> f64 {
-        let degree = self.ring.len();
         self.left.clear();
-        self.left.extend(0..degree);
+        self.left.extend(0..self.ring.len());
         self.triangles.clear();
         for ear in ears {
             let count = self.left.len();
             let Some(k) = self.left.iter().position(|&i| i == ear) else { continue };
             let [p, n] = [(k + count - 1) % count, (k + 1) % count].map(|k| self.ring[self.left[k]]);
-            self.triangles.push([p, self.ring[ear], n]);
+            self.triangles.push(Triangle::new(&[p, self.ring[ear], n]));
             self.left.remove(k);
         }
+        self.of_triangles(bound)
+    }
+
+    /// The same of the fan around a ring vertex.
+    pub(super) fn of_fan(&mut self, target: usize, bound: f64) -> f64 {
+        let ring = &self.ring;
+        let apex = ring[target];
+        let (before, after) = ring.split_at(target);
+        self.triangles.clear();
+        let mut rest = after[1..].iter().chain(before);
+        let Some(mut p) = rest.next() else { return f64::INFINITY };
+        for q in rest {
+            self.triangles.push(Triangle::new(&[apex, *p, *q]));
+            p = q;
+        }
+        self.of_triangles(bound)
+    }
+
+    fn of_triangles(&self, bound: f64) -> f64 {
         let mut sum = 0.0;
         for (i, &sample) in self.samples.iter().enumerate() {
-            let nearest =
-                self.triangles.iter().map(|t| squared_distance(sample, t)).fold(f64::INFINITY, f64::min);
+            let distances = self.triangles.iter().map(|t| t.squared_distance(sample));
+            let nearest = distances.fold(f64::INFINITY, f64::min);
             sum += if i == 0 { 2.0 * nearest } else { nearest };
             if sum > bound {
                 break;

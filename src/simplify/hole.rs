@@ -4,7 +4,7 @@
 //! Departs from section 6 of the paper, which collapses along the shortest legal edge: measured by the
 //! distance of prefixes from the surface, that is up to 8 dB worse.
 
-use super::collapse::is_legal;
+use super::collapse::{is_legal, keeps_sides, makes_new_edges};
 use super::deviation::Deviation;
 use super::seams::Demand;
 use super::triangulate::EarClipper;
@@ -15,6 +15,45 @@ use super::{ShrinkingSurface, Star};
 const UNFIT: f64 = 8.0;
 /// Deviations below this share of the star's extent are as good as none: a fiftieth of its spokes.
 const SMALL: f64 = 4e-4;
+
+/// What does not depend on which vertices went before, as long as the star's own did not: the fans.
+#[derive(Clone, Copy)]
+pub(crate) struct Prospect {
+    /// The best half-edge collapses that keep every face on its side, as places in the ring, and their deviation.
+    targets: Places,
+    deviation: f64,
+    /// Whether it deviates too much, so that the vertex stays.
+    is_unfit: bool,
+}
+
+impl Prospect {
+    /// The same of a ring of so many vertices that begins `shift` places later.
+    pub(super) fn turned(self, shift: usize, degree: usize) -> Self {
+        Self { targets: self.targets.turned(shift, degree), ..self }
+    }
+}
+
+/// Places in a ring of up to 64 vertices.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Places(u64);
+
+impl Places {
+    pub(super) const MOST: usize = 64;
+
+    pub(super) fn insert(&mut self, place: usize) {
+        self.0 |= 1 << place;
+    }
+
+    /// The same of a ring of so many vertices that begins `shift` places later.
+    pub(super) fn turned(self, shift: usize, degree: usize) -> Self {
+        let all = u64::MAX >> (Self::MOST - degree);
+        Self((self.0 >> shift | self.0 << (degree - shift)) & all)
+    }
+
+    pub(super) fn first(self) -> usize {
+        self.0.trailing_zeros() as usize
+    }
+}
 
 /// Scratch space of the choice.
 #[derive(Default)]
@@ -44,34 +83,127 @@ impl HoleFiller {
             self.ears.clear();
             return is_ear.then_some(&self.ears);
         }
-        let clipped = self.clipper.clip(surface, star, grid, demand);
-        if tolerance == f64::INFINITY && clipped.is_some() {
-            return clipped;
+        if tolerance == f64::INFINITY && self.clipper.clip(surface, star, grid, demand).is_some() {
+            return Some(self.clipper.ears());
         }
         self.deviation.set(star, positions);
-        let mut best = (f64::INFINITY, None);
-        let mut least = f64::INFINITY;
-        let may_fan = |&i: &usize| {
+        let may_fan = |i: usize| {
             demand == Demand::None || fan(i, degree).all(|ear| demand.allows([i, ear, (ear + 1) % degree]))
         };
-        let targets = (0..degree).filter(|&i| star.is_closed() || i == 0 || i == degree - 1);
-        for target in targets.filter(may_fan) {
-            let deviation = self.deviation.of(fan(target, degree), best.0);
-            least = least.min(deviation);
-            if deviation < best.0 && is_legal(surface, star, target, grid) {
-                best = (deviation, Some(target));
-            }
-        }
-        if best.0 > UNFIT * (least + SMALL * self.deviation.extent()) {
+        let is_legal = |i: usize| is_legal(surface, star, i, grid);
+        let (best, is_unfit) = self.best_fan(star, 0, may_fan, is_legal, |_, _| ());
+        if is_unfit {
             return None;
         }
-        let bound = best.0 * tolerance;
-        match (clipped, best.1) {
+        self.choose(surface, star, grid, tolerance, demand, best)
+    }
+
+    /// What [`fill`](Self::fill) with no demand finds of the fans. `first` is the one of which most is expected.
+    pub(crate) fn foresee(
+        &mut self,
+        star: &Star,
+        grid: &[[i32; 3]],
+        positions: &[[f64; 3]],
+        first: usize,
+    ) -> Option<Prospect> {
+        if !(3..=Places::MOST).contains(&star.degree()) {
+            return None;
+        }
+        self.deviation.set(star, positions);
+        let mut targets = Places::default();
+        let mut deviation = f64::INFINITY;
+        let is_legal = |i: usize| keeps_sides(star, i, grid);
+        let (best, is_unfit) = self.best_fan(
+            star,
+            first,
+            |_| true,
+            is_legal,
+            |i, of_fan| {
+                if of_fan < deviation {
+                    (targets, deviation) = (Places::default(), of_fan);
+                }
+                targets.insert(i);
+            },
+        );
+        (best.1.is_some() || is_unfit).then_some(Prospect { targets, deviation, is_unfit })
+    }
+
+    /// The same as [`fill`](Self::fill) with no demand, if all that was foreseen comes true.
+    pub(crate) fn fill_as_foreseen(
+        &mut self,
+        surface: &ShrinkingSurface,
+        star: &Star,
+        grid: &[[i32; 3]],
+        positions: &[[f64; 3]],
+        tolerance: f64,
+        prospect: Option<Prospect>,
+    ) -> Option<&[usize]> {
+        let Some(Prospect { targets, deviation, is_unfit }) = prospect else {
+            return self.fill(surface, star, grid, positions, tolerance, Demand::None);
+        };
+        if is_unfit {
+            return None;
+        }
+        let target = targets.first();
+        if !makes_new_edges(surface, star, target) {
+            return self.fill(surface, star, grid, positions, tolerance, Demand::None);
+        }
+        self.deviation.set(star, positions);
+        self.choose(surface, star, grid, tolerance, Demand::None, (deviation, Some(target)))
+    }
+
+    /// The legal fan that deviates least, the first one of several, and whether that is much more than the
+    /// least of all. `see` is told of each legal one that does not deviate more than those before.
+    fn best_fan(
+        &mut self,
+        star: &Star,
+        first: usize,
+        may_fan: impl Fn(usize) -> bool,
+        is_legal: impl Fn(usize) -> bool,
+        mut see: impl FnMut(usize, f64),
+    ) -> ((f64, Option<usize>), bool) {
+        let degree = star.degree();
+        let mut best = (f64::INFINITY, None);
+        let mut least = f64::INFINITY;
+        let is_target = |&i: &usize| (star.is_closed() || i == 0 || i == degree - 1) && may_fan(i);
+        let others = (0..degree).filter(|&i| i != first);
+        for target in std::iter::once(first).chain(others).filter(is_target) {
+            let deviation = self.deviation.of_fan(target, best.0);
+            least = least.min(deviation);
+            if deviation <= best.0 && is_legal(target) {
+                see(target, deviation);
+                let is_first = best.1.is_none_or(|best| target < best);
+                if deviation < best.0 || is_first {
+                    best = (deviation, Some(target));
+                }
+            }
+        }
+        (best, best.0 > UNFIT * (least + SMALL * self.deviation.extent()))
+    }
+
+    /// The hole that is cheap to code, unless the best fan is much better.
+    fn choose(
+        &mut self,
+        surface: &ShrinkingSurface,
+        star: &Star,
+        grid: &[[i32; 3]],
+        tolerance: f64,
+        demand: Demand,
+        (deviation, target): (f64, Option<usize>),
+    ) -> Option<&[usize]> {
+        let bound = deviation * tolerance;
+        let clipped = self.clipper.clip(surface, star, grid, demand);
+        match (clipped, target) {
             (Some(ears), None) => Some(ears),
-            (Some(ears), _) if self.deviation.of(ears.iter().copied(), bound) <= bound => Some(ears),
+            (Some(ears), Some(target))
+                if is_fan(ears, target, star.degree())
+                    || self.deviation.of(ears.iter().copied(), bound) <= bound =>
+            {
+                Some(ears)
+            }
             (_, Some(target)) => {
                 self.ears.clear();
-                self.ears.extend(fan(target, degree));
+                self.ears.extend(fan(target, star.degree()));
                 Some(&self.ears)
             }
             (None, None) => None,
@@ -82,6 +214,20 @@ impl HoleFiller {
 /// The ears whose cutting leaves the fan around a ring vertex.
 fn fan(target: usize, degree: usize) -> impl Iterator<Item = usize> {
     (1..degree - 1).map(move |i| (target + i) % degree)
+}
+
+/// Whether cutting `ears` leaves the fan around `target`: all but the last one cut a diagonal to it.
+fn is_fan(ears: &[usize], target: usize, degree: usize) -> bool {
+    // The places between the target and the diagonals so far.
+    let (mut after, mut before) = (1, degree - 1);
+    ears[..ears.len() - 1].iter().all(|&ear| {
+        let place = if ear >= target { ear - target } else { ear + degree - target };
+        let is_next = place == after;
+        let is_last = place == before;
+        after += usize::from(is_next);
+        before -= usize::from(is_last);
+        is_next || is_last
+    })
 }
 
 #[cfg(test)]

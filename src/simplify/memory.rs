@@ -2,10 +2,11 @@
 //! on from each removed vertex to a neighbour (Garland and Heckbert; section 5.1 of the paper names
 //! the property). So errors are measured against M^L, not against the level before.
 
-use super::Star;
+use super::{Rings, Star};
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Squared distance from a set of planes, weighed by area, as a function of the way `d` from the
 /// vertex it belongs to: dᵀ A d + 2 bᵀ d + c. A is symmetric: its columns down to the diagonal.
@@ -81,24 +82,50 @@ impl<'a> ErrorMemory<'a> {
         Self { positions, quadrics, area }
     }
 
-    /// The neighbour into which the star's vertex collapses with the least error, and that error:
-    /// area times squared distance. At a boundary only the ends of the ring count.
+    /// The neighbour into which the star's vertex collapses with the least error, the first one of several, and that
+    /// error: area times squared distance. At a boundary only the ends of the ring count.
     pub(crate) fn least_error(&self, star: &Star) -> (f64, u32) {
+        self.heir(star).0
+    }
+
+    /// The same, and whether there is just one such neighbour.
+    pub(crate) fn heir(&self, star: &Star) -> ((f64, u32), bool) {
         let quadric = &self.quadrics[star.vertex as usize];
-        let error = |&u: &u32| (quadric.at(self.way(star.vertex, u)), u);
-        let less = |best: (f64, u32), other: (f64, u32)| if other.0 < best.0 { other } else { best };
-        let start = (f64::INFINITY, star.vertex);
-        if star.is_closed() {
-            star.ring.iter().map(error).fold(start, less)
-        } else {
-            [star.ring.first(), star.ring.last()].into_iter().flatten().map(error).fold(start, less)
+        let mut least = (f64::INFINITY, star.vertex);
+        let mut is_sole = false;
+        let step = if star.is_closed() { 1 } else { (star.degree() - 1).max(1) };
+        for &u in star.ring.iter().step_by(step) {
+            let error = quadric.at(self.way(star.vertex, u));
+            if error < least.0 {
+                (least, is_sole) = ((error, u), true);
+            } else if error == least.0 {
+                is_sole = false;
+            }
         }
+        (least, is_sole)
+    }
+
+    /// The error of [`least_error`](Self::least_error) at each of `vertices`, whose rings these are.
+    pub(crate) fn errors(&self, rings: &Rings, vertices: &[u32]) -> Vec<f64> {
+        const MIN_PARALLEL: usize = 2048;
+        let error = |(&v, place): (&u32, u32)| {
+            let quadric = &self.quadrics[v as usize];
+            let errors = rings.targets(place).iter().map(|&u| quadric.at(self.way(v, vertices[u as usize])));
+            errors.fold(f64::INFINITY, |least, error| if error < least { error } else { least })
+        };
+        let places = (0..vertices.len() as u32).into_par_iter();
+        vertices.par_iter().zip(places).with_min_len(MIN_PARALLEL).map(error).collect()
     }
 
     /// The star's vertex goes: the neighbour where that costs least remembers it.
     pub(crate) fn hand_on(&mut self, star: &Star) {
         let (_, heir) = self.least_error(star);
-        let moved = self.quadrics[star.vertex as usize].moved(self.way(star.vertex, heir));
+        self.hand_on_to(star.vertex, heir);
+    }
+
+    /// A vertex goes: its `heir` remembers it.
+    pub(crate) fn hand_on_to(&mut self, vertex: u32, heir: u32) {
+        let moved = self.quadrics[vertex as usize].moved(self.way(vertex, heir));
         self.quadrics[heir as usize].add(&moved);
     }
 

@@ -6,11 +6,15 @@ mod deviation;
 pub(crate) mod geometry;
 pub(crate) mod hole;
 pub(crate) mod memory;
+pub(crate) mod outlook;
+pub(crate) mod packing;
 pub(crate) mod record;
+pub(crate) mod rings;
 pub(crate) mod seams;
 pub(crate) mod shrinking;
 pub(crate) mod triangulate;
 
 pub(crate) use record::LevelRecord;
+pub(crate) use rings::Rings;
 pub(crate) use seams::Seams;
 pub(crate) use shrinking::{ShrinkingSurface, Star};

@@ -1,5 +1,6 @@
 //! A surface from which vertices are taken, one star at a time.
 
+use super::Rings;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 
@@ -31,6 +32,8 @@ pub(crate) struct ShrinkingSurface {
     pub(crate) surface: Surface,
     num_vertices: usize,
     num_faces: usize,
+    /// Of each vertex the bits of all neighbours that it has or had: who is not among them is none.
+    acquaintances: Vec<u32>,
     /// Scratch: neighbours of the polygon corners and the corner across each polygon edge.
     after: Vec<usize>,
     before: Vec<usize>,
@@ -38,9 +41,22 @@ pub(crate) struct ShrinkingSurface {
     slots: Vec<u32>,
 }
 
+/// One of 32 bits that tell most vertices apart.
+#[inline]
+fn bit(vertex: u32) -> u32 {
+    1 << (vertex.wrapping_mul(0x9e37_79b1) >> 27)
+}
+
 impl ShrinkingSurface {
     pub(crate) fn new(surface: Surface) -> Self {
+        let mut acquaintances = vec![0; surface.corner_of.len()];
+        for &[a, b, c] in &surface.triangles {
+            acquaintances[a as usize] |= bit(b) | bit(c);
+            acquaintances[b as usize] |= bit(c) | bit(a);
+            acquaintances[c as usize] |= bit(a) | bit(b);
+        }
         Self {
+            acquaintances,
             num_vertices: surface.corner_of.len(),
             num_faces: surface.triangles.len(),
             surface,
@@ -48,6 +64,14 @@ impl ShrinkingSurface {
             before: Vec::new(),
             outer: Vec::new(),
             slots: Vec::new(),
+        }
+    }
+
+    /// Forgets the neighbours that were; `rings` are those of all vertices.
+    pub(crate) fn forget(&mut self, rings: &Rings, vertices: &[u32]) {
+        for (&v, place) in vertices.iter().zip(0..) {
+            let bits = rings.of(place).iter().map(|&u| bit(vertices[u as usize]));
+            self.acquaintances[v as usize] = bits.fold(0, |all, bit| all | bit);
         }
     }
 
@@ -81,8 +105,41 @@ impl ShrinkingSurface {
         }
     }
 
+    /// Calls `see` with each neighbour, in any order, and whether it is an end of the ring. Returns whether there
+    /// are no ends.
+    #[inline]
+    pub(crate) fn for_each_neighbour(&self, vertex: u32, mut see: impl FnMut(u32, bool)) -> bool {
+        let s = &self.surface;
+        let start = s.corner_of[vertex as usize];
+        let mut corner = start;
+        loop {
+            let left = s.swing_left(corner);
+            if left == NO_CORNER {
+                see(s.vertex(prev(corner)), true);
+                break;
+            }
+            see(s.vertex(prev(corner)), false);
+            if left == start {
+                return true;
+            }
+            corner = left;
+        }
+        let mut corner = start;
+        loop {
+            let right = s.swing_right(corner);
+            see(s.vertex(next(corner)), right == NO_CORNER);
+            if right == NO_CORNER {
+                return false;
+            }
+            corner = right;
+        }
+    }
+
     /// True if an edge joins the two vertices.
     pub(crate) fn has_edge(&self, a: u32, b: u32) -> bool {
+        if self.acquaintances[a as usize] & bit(b) == 0 || self.acquaintances[b as usize] & bit(a) == 0 {
+            return false;
+        }
         let s = &self.surface;
         let (from, to) = if s.valence[a as usize] <= s.valence[b as usize] { (a, b) } else { (b, a) };
         let start = s.corner_of[from as usize];
@@ -128,6 +185,11 @@ impl ShrinkingSurface {
             surface.opposite[3 * slot as usize..3 * slot as usize + 3].fill(NO_CORNER);
         }
         let closes_new_edge = !star.is_closed() && degree > 2;
+        if closes_new_edge {
+            let (first, last) = (star.ring[0], star.ring[degree - 1]);
+            self.acquaintances[first as usize] |= bit(last);
+            self.acquaintances[last as usize] |= bit(first);
+        }
         for (i, &v) in star.ring.iter().enumerate() {
             let is_end = i == 0 || i == degree - 1;
             surface.valence[v as usize] -= u32::from(!(closes_new_edge && is_end));
@@ -150,8 +212,9 @@ impl ShrinkingSurface {
             if k + 1 == ears.len() {
                 surface.link(base + 1, self.outer[n]);
             } else {
-                for i in [p, n] {
+                for (i, j) in [(p, n), (n, p)] {
                     surface.valence[star.ring[i] as usize] += 1;
+                    self.acquaintances[star.ring[i] as usize] |= bit(star.ring[j]);
                 }
                 self.outer[p] = base + 1;
                 self.after[p] = n;
@@ -196,6 +259,9 @@ mod tests {
             .map(|t| t.map(|v| name[v as usize]))
             .collect();
         assert_eq!((left.len(), count as usize), (shrinking.num_faces(), shrinking.num_vertices()));
+        for &[a, b, c] in shrinking.surface.triangles.iter().filter(|&&t| t != FREE) {
+            assert!(shrinking.has_edge(a, b) && shrinking.has_edge(b, c) && shrinking.has_edge(c, a));
+        }
         let rebuilt = Surface::from_triangles(left, count as usize).unwrap();
         for (v, &n) in name.iter().enumerate() {
             if n != u32::MAX {

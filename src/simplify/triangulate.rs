@@ -15,6 +15,11 @@ pub(crate) struct EarClipper {
 }
 
 impl EarClipper {
+    /// Those of the last hole.
+    pub(crate) fn ears(&self) -> &[usize] {
+        &self.ears
+    }
+
     /// The ears to cut, or `None` if the hole has too many corners or the rule does not keep every
     /// triangle on its side, every new edge new and the `demand` met. `grid` decides the sides.
     pub(crate) fn clip(
