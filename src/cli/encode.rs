@@ -113,7 +113,19 @@ fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
     names.chain(attributes.material_libraries.first().map(|_| "mtllib".to_owned())).collect()
 }
 
+/// Fewer vertices need no beginnings.
+const SMALL: u32 = 1000;
+
 fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
+    if let [base, rest @ ..] = encoded.info.passes()
+        && rest.is_empty()
+        && base.vertices >= SMALL
+    {
+        ui.note(
+            name,
+            "in one piece: nothing shows before the last byte has come; `--levels 99` keeps levels",
+        );
+    }
     let RepairReport { degenerate_faces, isolated_vertices, repeated_vertices } = encoded.repair;
     if encoded.values_dropped > 0 {
         let values = counted(encoded.values_dropped, "value", "values");

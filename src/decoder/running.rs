@@ -14,6 +14,9 @@ use crate::passes::plain::Located;
 use crate::passes::work::{SWEPT_PER_UNIT, Work};
 use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, plain, refine};
 
+/// Whether the decoder reads the profile *fast*. Without it the compiler leaves out what would.
+const STREAMS: bool = cfg!(feature = "fast");
+
 /// A pass that has begun, and what was there before it.
 pub(super) struct Running {
     coder: Coder,
@@ -58,7 +61,7 @@ enum Stage {
 impl Running {
     /// `None` if the payload has streams and they are not what such a pass may have.
     pub(super) fn new(payload: &[u8], pass: &PassInfo, profile: Profile) -> Option<Self> {
-        let coder = if profile == Profile::Fast && pass.kind != PassKind::Base {
+        let coder = if STREAMS && profile == Profile::Fast && pass.kind != PassKind::Base {
             Coder::Streams(Box::new(StreamReader::new(payload, pass.row.vertices, most_stream_bytes(pass))?))
         } else {
             Coder::Range(RangeDecoder::new(payload).pause())
@@ -87,13 +90,13 @@ impl Running {
                 self.coder = Coder::Range(coder.pause());
                 at_end(result, &coder)
             }
-            Coder::Streams(mut coder) => {
+            Coder::Streams(mut coder) if STREAMS => {
                 let result = self.advance_with(decoder, pass, &mut *coder, work);
                 let result = at_end(result, &*coder);
                 self.coder = Coder::Streams(coder);
                 result
             }
-            Coder::AtWork => Err(Malformed(EXHAUSTED)),
+            Coder::Streams(_) | Coder::AtWork => Err(Malformed(EXHAUSTED)),
         }
     }
 

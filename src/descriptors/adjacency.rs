@@ -37,7 +37,11 @@ impl Adjacency {
         }
 
         let mut offsets = Vec::with_capacity(n + 1);
-        let mut groups = Vec::with_capacity(n);
+        // On a surface a vertex has at most one neighbour more than faces; a vector that grows would take twice the room.
+        let num_groups = |begin: usize, end: usize| ((end - begin) / 2 + 1).div_ceil(GROUP);
+        let first = ends.first().map_or(0, |&end| num_groups(0, end));
+        let others = ends[..n].windows(2).map(|row| num_groups(row[0], row[1]));
+        let mut groups = Vec::with_capacity(first + others.sum::<usize>());
         let mut seen_from = vec![u32::MAX; n];
         let mut begin = 0;
         for (v, &end) in ends[..n].iter().enumerate() {

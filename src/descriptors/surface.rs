@@ -20,6 +20,9 @@ pub(super) struct Vertex {
     pub(super) normal: DVec3,
 }
 
+/// Surfaces with so many vertices have their tables made one after the other: both at once take too much memory.
+const MANY_VERTICES: usize = 1 << 20;
+
 /// The input of every descriptor. Vertices are renumbered so that neighbours are near in memory.
 pub(super) struct Surface {
     /// The proper faces.
@@ -73,10 +76,13 @@ impl Surface {
             .collect();
         // What follows takes the most memory.
         drop((positions, surface_vertices));
-        let (adjacency, ()) = rayon::join(
-            || Adjacency::new(mesh_vertices.len(), &triangles),
-            || set_normals(&mut vertices, &triangles, normals),
-        );
+        let adjacent = || Adjacency::new(mesh_vertices.len(), &triangles);
+        let adjacency = if vertices.len() < MANY_VERTICES {
+            rayon::join(adjacent, || set_normals(&mut vertices, &triangles, normals)).0
+        } else {
+            set_normals(&mut vertices, &triangles, normals);
+            adjacent()
+        };
         Some(Self { triangles, adjacency, vertices, mesh_vertices, unit, selected: None })
     }
 
@@ -202,7 +208,10 @@ pub(super) fn mean_edge_length(mesh: &TriMesh) -> f64 {
 
 /// The faces that name three different vertices.
 fn proper_triangles(mesh: &TriMesh) -> Vec<[u32; 3]> {
-    mesh.triangles().iter().copied().filter(has_three_vertices).collect()
+    // Nearly all are: a vector that grows would take twice the room.
+    let mut proper = Vec::with_capacity(mesh.num_triangles());
+    proper.extend(mesh.triangles().iter().copied().filter(has_three_vertices));
+    proper
 }
 
 /// Box around the corners of `triangles`, model units; `None` without triangles.

@@ -72,7 +72,10 @@ pub(super) fn order(
         vertex_source,
         corner_source: turned.iter().map(|&(_, corner)| corner).collect(),
     };
-    (ordered, turned.into_iter().map(|(t, _)| t).collect())
+    // Collected in place they would keep the room of the corners.
+    let mut triangles = Vec::with_capacity(turned.len());
+    triangles.extend(turned.into_iter().map(|(t, _)| t));
+    (ordered, triangles)
 }
 
 /// Triangles from their smallest vertex on, ascending, each with the corner there.
