@@ -4,10 +4,13 @@
 /// where the descriptors spend half of their time, has no unpredictable branch per vertex.
 pub(super) const GROUP: usize = 8;
 
+/// Vertices whose rows are gathered at once: all neighbours of a large mesh take too much memory.
+const AT_ONCE: usize = 1 << 21;
+
 /// Neighbours of every vertex over the undirected edges of the faces.
 pub(super) struct Adjacency {
     /// Row v of `groups` is `offsets[v]..offsets[v + 1]`.
-    offsets: Vec<usize>,
+    offsets: Vec<u32>,
     groups: Vec<[u32; GROUP]>,
 }
 
@@ -16,43 +19,53 @@ impl Adjacency {
     /// `triangles` must not repeat an index within a face.
     pub(super) fn new(num_vertices: usize, triangles: &[[u32; 3]]) -> Self {
         let n = num_vertices;
-        // Counts are kept one place to the right, so that after filling `ends[v]` is the end of row v.
-        let mut ends = vec![0usize; n + 1];
+        let mut begins = vec![0usize; n + 1];
         for t in triangles {
             for &v in t {
-                ends[v as usize + 1] += 2;
+                begins[v as usize + 1] += 2;
             }
         }
         for v in 0..n {
-            ends[v + 1] += ends[v];
+            begins[v + 1] += begins[v];
         }
-        let mut named = vec![0u32; ends[n]];
+        // On a surface a vertex has at most one neighbour more than faces.
+        let num_groups = |row: &[usize]| ((row[1] - row[0]) / 2 + 1).div_ceil(GROUP);
+        let mut table = Self {
+            offsets: Vec::with_capacity(n + 1),
+            groups: Vec::with_capacity(begins.windows(2).map(num_groups).sum()),
+        };
+        let mut seen_from = vec![u32::MAX; n];
+        for first in (0..n).step_by(AT_ONCE) {
+            table.append(&begins[first..(first + AT_ONCE).min(n) + 1], first, triangles, &mut seen_from);
+        }
+        table.offsets.push(table.groups.len() as u32);
+        table
+    }
+
+    /// Appends the rows of the vertices from `first` on, which begin in a list of all neighbours at these places.
+    fn append(&mut self, begins: &[usize], first: usize, triangles: &[[u32; 3]], seen_from: &mut [u32]) {
+        let Some((&start, &end)) = begins.first().zip(begins.last()) else { return };
+        let mut named = vec![0u32; end - start];
+        let mut places: Vec<usize> = begins.iter().map(|begin| begin - start).collect();
         for t in triangles {
             for (v, u, w) in [(t[0], t[1], t[2]), (t[1], t[2], t[0]), (t[2], t[0], t[1])] {
-                let at = ends[v as usize];
-                named[at] = u;
-                named[at + 1] = w;
-                ends[v as usize] = at + 2;
+                let row = (v as usize).wrapping_sub(first);
+                if row < begins.len() - 1 {
+                    let at = places[row];
+                    named[at] = u;
+                    named[at + 1] = w;
+                    places[row] = at + 2;
+                }
             }
         }
-
-        let mut offsets = Vec::with_capacity(n + 1);
-        // On a surface a vertex has at most one neighbour more than faces; a vector that grows would take twice the room.
-        let num_groups = |begin: usize, end: usize| ((end - begin) / 2 + 1).div_ceil(GROUP);
-        let first = ends.first().map_or(0, |&end| num_groups(0, end));
-        let others = ends[..n].windows(2).map(|row| num_groups(row[0], row[1]));
-        let mut groups = Vec::with_capacity(first + others.sum::<usize>());
-        let mut seen_from = vec![u32::MAX; n];
-        let mut begin = 0;
-        for (v, &end) in ends[..n].iter().enumerate() {
-            offsets.push(groups.len());
-            let v = v as u32;
+        for (v, row) in (first as u32..).zip(begins.windows(2)) {
+            self.offsets.push(self.groups.len() as u32);
             let (mut group, mut len) = ([v; GROUP], 0);
-            for &u in &named[begin..end] {
+            for &u in &named[row[0] - start..row[1] - start] {
                 if seen_from[u as usize] != v {
                     seen_from[u as usize] = v;
                     if len == GROUP {
-                        groups.push(group);
+                        self.groups.push(group);
                         (group, len) = ([v; GROUP], 0);
                     }
                     group[len] = u;
@@ -60,17 +73,14 @@ impl Adjacency {
                 }
             }
             if len > 0 {
-                groups.push(group);
+                self.groups.push(group);
             }
-            begin = end;
         }
-        offsets.push(groups.len());
-        Self { offsets, groups }
     }
 
     /// Distinct neighbours of `v`, in the order in which the faces name them, filled up with `v` itself.
     #[inline]
     pub(super) fn of(&self, v: usize) -> &[[u32; GROUP]] {
-        &self.groups[self.offsets[v]..self.offsets[v + 1]]
+        &self.groups[self.offsets[v] as usize..self.offsets[v + 1] as usize]
     }
 }
