@@ -141,7 +141,7 @@ pub fn round_trip(data: &[u8]) {
     let options = options_from(&mut input);
     let seams = [input.u8(), input.u8()];
     let Some(mesh) = mesh_from(&mut input) else { return };
-    let attributes = attributes_of(&mesh, seams);
+    let attributes = attributes_of(&mesh, seams, options.lossless);
     let encoded = match encode_with_attributes(&mesh, &attributes, &options, &|_| {}) {
         Ok(encoded) => encoded,
         Err(EncodeError::NoTriangles | EncodeError::BoundingBox) => return,
@@ -179,12 +179,19 @@ pub fn round_trip(data: &[u8]) {
         assert_eq!((whole.num_vertices(), whole.num_triangles()), (used.len(), usable().count()));
         assert_eq!(cells_of(decoded), quantised(&mesh, options.quantization, encoded.info.side()));
     }
-    let found = decoder.attributes();
-    assert_eq!(values_of(&decoded.to_cut_mesh(), &found), values_of(&mesh, &attributes));
+    let wanted = values_of(&mesh, &attributes);
+    if options.lossless {
+        let Some((whole, found)) = decoder.to_tri_mesh_with_attributes() else { panic!("no mesh") };
+        assert_fit(&found, &whole);
+        assert_eq!(values_of(&whole, &found), wanted);
+    } else {
+        assert_eq!(values_of(&decoded.to_cut_mesh(), &decoder.attributes()), wanted);
+    }
 }
 
-/// Attributes of every domain that come back exactly. The first number says which, the second how often rows differ.
-fn attributes_of(mesh: &TriMesh, [which, seams]: [u8; 2]) -> Attributes {
+/// Attributes of every domain that come back exactly, any floats only if all bits are kept. The first number says which, the
+/// second how often rows differ.
+fn attributes_of(mesh: &TriMesh, [which, seams]: [u8; 2], is_lossless: bool) -> Attributes {
     let mix = |a: usize, b: usize| (a.wrapping_mul(2_654_435_761) ^ b.wrapping_mul(40_503)) >> 3;
     let every = 1 + usize::from(seams);
     let mut attributes = Attributes::default();
@@ -215,6 +222,14 @@ fn attributes_of(mesh: &TriMesh, [which, seams]: [u8; 2]) -> Attributes {
         let values = (0..mesh.num_triangles()).map(|t| (mix(t, 5) / every) as i16 & 511).collect();
         attributes.list.push(Attribute::new("f", Semantic::Generic, Domain::Face, 1, Values::I16(values)));
     }
+    if which & 16 != 0 && is_lossless {
+        let bits = |k: usize| (mix(k / every, 6) as u32).rotate_left(u32::from(which >> 5));
+        let values = (0..9 * mesh.num_triangles()).map(|k| f32::from_bits(bits(k))).collect();
+        attributes.list.push(Attribute::new("n", Semantic::Normal, Domain::Corner, 3, Values::F32(values)));
+        let wide = |k: usize| f64::from_bits(u64::from(bits(k)) << 32 | u64::from(bits(k + 1)));
+        let values = Values::F64((0..mesh.num_vertices()).map(wide).collect());
+        attributes.list.push(Attribute::new("q", Semantic::Generic, Domain::Vertex, 1, values));
+    }
     attributes
 }
 
@@ -224,7 +239,7 @@ fn values_of(mesh: &TriMesh, attributes: &Attributes) -> Vec<Vec<Option<Vec<Stri
         Some(names) => vec![names[row].clone()],
         None => {
             let n = attribute.num_components;
-            (row * n..row * n + n).map(|k| format!("{:?}", attribute.values.number(k))).collect()
+            (row * n..row * n + n).map(|k| format!("{:?}", attribute.values.bits(k))).collect()
         }
     };
     let corner = |t: usize, c: usize| {

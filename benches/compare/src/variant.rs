@@ -12,7 +12,14 @@ pub struct Variant {
     aim: Option<Optimize>,
     profile: Profile,
     descriptor: Option<Descriptor>,
+    /// Not in one piece, though that be smaller.
+    keeps_levels: bool,
 }
+
+/// The smallest streams that have beginnings.
+const LEVELS: &str = "levels";
+/// More than any mesh has.
+const ALL_LEVELS: u32 = 128;
 
 impl Variant {
     pub fn options(self, bits: u32) -> EncodeOptions {
@@ -24,6 +31,9 @@ impl Variant {
             Some(aim) => options.optimize = aim,
             None => options.partition = Partition::Algorithm1,
         }
+        if self.keeps_levels {
+            options.levels = Some(ALL_LEVELS);
+        }
         options
     }
 }
@@ -31,7 +41,11 @@ impl Variant {
 impl fmt::Display for Variant {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let name = self.aim.map_or(Partition::Algorithm1.name(), Optimize::name);
-        f.write_str(if self.profile == Profile::Fast { self.profile.name() } else { name })?;
+        f.write_str(match self.profile {
+            Profile::Fast => self.profile.name(),
+            _ if self.keeps_levels => LEVELS,
+            _ => name,
+        })?;
         self.descriptor.map_or(Ok(()), |descriptor| write!(f, ":{}", descriptor.name()))
     }
 }
@@ -46,15 +60,19 @@ impl FromStr for Variant {
             }
             None => (text, None),
         };
+        let usual = Self { aim: None, profile: Profile::default(), descriptor, keeps_levels: false };
         if aim == Partition::Algorithm1.name() {
-            return Ok(Self { aim: None, profile: Profile::default(), descriptor });
+            return Ok(usual);
         }
         if aim == Profile::Fast.name() {
-            return Ok(Self { aim: Some(Optimize::default()), profile: Profile::Fast, descriptor });
+            return Ok(Self { aim: Some(Optimize::default()), profile: Profile::Fast, ..usual });
+        }
+        if aim == LEVELS {
+            return Ok(Self { aim: Some(Optimize::Size), keeps_levels: true, ..usual });
         }
         let found = Optimize::ALL.into_iter().find(|known| known.name() == aim);
         found
-            .map(|aim| Self { aim: Some(aim), profile: Profile::default(), descriptor })
-            .ok_or_else(|| format!("`{aim}` is neither size, balanced, prefix, fast nor algorithm1"))
+            .map(|aim| Self { aim: Some(aim), ..usual })
+            .ok_or_else(|| format!("`{aim}` is neither size, levels, balanced, prefix, fast nor algorithm1"))
     }
 }
