@@ -73,7 +73,8 @@ test('the colours of a model are shown, at every level, and those of the descrip
     slider.value = '0.1';
     slider.dispatchEvent(new Event('input'));
   });
-  await page.waitForFunction(() => globalThis.lwc.shown.pass.end <= 0.1 * globalThis.lwc.shown.info.totalBytes);
+  // The end of a pass counts the colours behind it, which may still be missing.
+  await page.waitForFunction(() => globalThis.lwc.shown.pass.vertices < 2000);
   const [vertices, components, counted] = await sizes();
   assert.ok(vertices === counted && vertices < 2000 && components === 4);
   const coarse = await tints(page);
