@@ -1,4 +1,3 @@
-from collections.abc import Mapping
 from typing import TypedDict
 
 from numpy.typing import ArrayLike
@@ -49,7 +48,7 @@ def encode(
     vertices: ArrayLike,
     faces: ArrayLike,
     *,
-    attributes: Mapping[str, Attribute | ArrayLike] | None = None,
+    attributes: dict[str, Attribute | ArrayLike] | None = None,
     descriptor: str | None = None,
     quantization: int | None = None,
     levels: int | None = None,
