@@ -26,8 +26,8 @@ impl Profile {
     }
 
     /// True if this build can code it.
-    pub fn is_supported(self) -> bool {
-        self == Profile::Small || cfg!(feature = "fast")
+    pub const fn is_supported(self) -> bool {
+        matches!(self, Profile::Small) || cfg!(feature = "fast")
     }
 
     /// The profile of a number in a header (`format/SPEC.md`, section 4.1).

@@ -70,27 +70,16 @@ fn assert_lossless(mesh: &TriMesh, attributes: &Attributes, what: &str) {
     assert!(encode(&decoded, &found, &options) == stream, "{what}: other bytes without the order");
 }
 
-const SCALARS: [ScalarType; 8] = [
-    ScalarType::I8,
-    ScalarType::U8,
-    ScalarType::I16,
-    ScalarType::U16,
-    ScalarType::I32,
-    ScalarType::U32,
-    ScalarType::F32,
-    ScalarType::F64,
-];
-
 #[test]
 fn every_type_on_every_domain_returns_bit_for_bit() {
     let mesh = sphere(2);
-    for (i, domain) in [Domain::Vertex, Domain::Corner, Domain::Face].into_iter().enumerate() {
+    for (i, domain) in Domain::ALL.into_iter().enumerate() {
         for (seed, semantics) in [
             (0, [Semantic::Generic, Semantic::TexCoord(0)]),
             (1, [Semantic::Color(0), Semantic::Normal]),
             (3, [Semantic::Object, Semantic::Generic]),
         ] {
-            let list = SCALARS.iter().zip(0..).flat_map(|(&scalar, k)| {
+            let list = ScalarType::ALL.iter().zip(0..).flat_map(|(&scalar, k)| {
                 let make = move |mesh, semantic, s| nasty(mesh, domain, scalar, semantic, s);
                 let mesh = &mesh;
                 semantics.map(|semantic| make(mesh, semantic, 6 * (k + 20 * i as u64) + seed))
@@ -114,11 +103,10 @@ fn usual_attributes_return_bit_for_bit() {
 fn every_kind_of_mesh_returns_with_attributes() {
     for (name, mesh) in every_kind() {
         let mesh = with_loose_things(mesh);
-        let list =
-            [Domain::Vertex, Domain::Corner, Domain::Face].into_iter().zip(0..).flat_map(|(domain, i)| {
-                let make = |scalar, seed| nasty(&mesh, domain, scalar, Semantic::Generic, seed);
-                [make(ScalarType::F32, 2 + i), make(ScalarType::U8, 9 + i), make(ScalarType::F64, 6 * i)]
-            });
+        let list = Domain::ALL.into_iter().zip(0..).flat_map(|(domain, i)| {
+            let make = |scalar, seed| nasty(&mesh, domain, scalar, Semantic::Generic, seed);
+            [make(ScalarType::F32, 2 + i), make(ScalarType::U8, 9 + i), make(ScalarType::F64, 6 * i)]
+        });
         assert_lossless(&mesh, &all(list.chain([materials(&mesh)]).collect()), name);
     }
 }

@@ -94,7 +94,7 @@ pub struct Encode {
     #[arg(long, value_name = "AIM", verbatim_doc_comment)]
     #[arg(default_value = EncodeOptions::default().optimize.name(), value_parser = optimize_parser())]
     pub optimize: Optimize,
-    /// How the passes are coded; all decode to the same meshes.
+    /// How the passes are coded; all decode to the same meshes, but that `--optimize size` is in one piece with small only.
     ///
     /// - small: arithmetic coding, the smallest stream
     /// - fast: zstd, a stream 1.2 to 1.7 times as large that decodes three to five times as fast

@@ -5,6 +5,7 @@ use super::attributes::AttributeDecoder;
 use crate::bitstream::header::Grid;
 use crate::bitstream::range_coder::RangeDecoder;
 use crate::limits::Limits;
+use crate::mesh::surface::turns;
 use crate::mesh::{Attribute, Attributes, Domain, GltfMaterials, NO_ROW, has_three_vertices};
 use crate::passes::attribute::Rows;
 use crate::passes::glue::{self, GlueModels};
@@ -54,6 +55,18 @@ impl Joined {
     fn faces<'a>(&'a self, triangles: &'a [[u32; 3]]) -> impl Iterator<Item = (u32, [u32; 3])> + 'a {
         let joined = (0..).zip(triangles.iter().map(|t| t.map(|v| self.place[v as usize])));
         joined.filter(|(_, triangle)| has_three_vertices(triangle))
+    }
+
+    /// Elements of the surface in the order of the joined mesh; of a corner also its joined vertex, else 0.
+    fn elements(&self, triangles: &[[u32; 3]], domain: Domain) -> Vec<[u32; 2]> {
+        let faces = || self.faces(triangles);
+        match domain {
+            Domain::Vertex => self.first.iter().map(|&v| [v, 0]).collect(),
+            Domain::Face => faces().map(|(face, _)| [face, 0]).collect(),
+            Domain::Corner => {
+                faces().flat_map(|(face, t)| [0, 1, 2].map(|k| [3 * face + k, t[k as usize]])).collect()
+            }
+        }
     }
 }
 
@@ -116,15 +129,7 @@ impl Extras {
         rows: &'a Rows,
         domain: Domain,
     ) -> Elements<'a> {
-        let faces = || joined.faces(triangles);
-        let on_surface = match domain {
-            Domain::Vertex => joined.first.iter().map(|&v| [v, 0]).collect(),
-            Domain::Face => faces().map(|(face, _)| [face, 0]).collect(),
-            Domain::Corner => {
-                faces().flat_map(|(face, t)| [0, 1, 2].map(|k| [3 * face + k, t[k as usize]])).collect()
-            }
-        };
-        Elements { rows, on_surface, num_loose: self.num_loose(domain) }
+        Elements { rows, on_surface: joined.elements(triangles, domain), num_loose: self.num_loose(domain) }
     }
 
     /// The attributes of the assembled mesh, from those of the surface. What lies loose has values only if a chunk
@@ -160,16 +165,9 @@ impl Extras {
                 told.of.clone()
             }
             _ => {
-                let row = |element: usize| attribute.row(element).map_or(NO_ROW, |row| row as u32);
-                let row = |element: u32| row(element as usize);
-                match attribute.domain {
-                    Domain::Vertex => joined.first.iter().map(|&v| row(v)).collect(),
-                    Domain::Face => joined.faces(triangles).map(|(face, _)| row(face)).collect(),
-                    Domain::Corner => joined
-                        .faces(triangles)
-                        .flat_map(|(face, _)| [0, 1, 2].map(|k| row(3 * face + k)))
-                        .collect(),
-                }
+                let row = |[element, _]: [u32; 2]| attribute.row(element as usize);
+                let elements = joined.elements(triangles, attribute.domain).into_iter();
+                elements.map(|element| row(element).map_or(NO_ROW, |row| row as u32)).collect()
             }
         };
         if let Some(told) = told.filter(|told| !told.is_exact) {
@@ -181,11 +179,10 @@ impl Extras {
             rows.extend(std::iter::repeat_n(NO_ROW, self.num_loose(attribute.domain)));
         }
         if let Some(order) = &self.order {
-            let corner = |c: u32, k: u32| rows[(c / 3 * 3 + (c + k) % 3) as usize];
             rows = match attribute.domain {
                 Domain::Vertex => order.vertices.iter().map(|&v| rows[v as usize]).collect(),
                 Domain::Corner => {
-                    order.corners.iter().flat_map(|&c| [0, 1, 2].map(|k| corner(c, k))).collect()
+                    order.corners.iter().flat_map(|&c| turns(c).map(|c| rows[c as usize])).collect()
                 }
                 Domain::Face => order.corners.iter().map(|&c| rows[(c / 3) as usize]).collect(),
             };

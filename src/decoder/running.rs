@@ -15,7 +15,7 @@ use crate::passes::work::{SWEPT_PER_UNIT, Work};
 use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, plain, refine};
 
 /// Whether the decoder reads the profile *fast*. Without it the compiler leaves out what would.
-const STREAMS: bool = cfg!(feature = "fast");
+const STREAMS: bool = Profile::Fast.is_supported();
 
 /// A pass that has begun, and what was there before it.
 pub(super) struct Running {

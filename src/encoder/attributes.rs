@@ -1,6 +1,7 @@
 //! From attributes to integers: how each is declared, and the rows of its elements.
 
 use super::options::EncodeOptions;
+use crate::mesh::surface::turns;
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
 use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
@@ -70,9 +71,7 @@ impl Elements<'_> {
     pub(super) fn of(self, domain: Domain) -> Vec<u32> {
         match domain {
             Domain::Vertex => self.vertices.to_vec(),
-            Domain::Corner => {
-                self.corners.iter().flat_map(|&c| [0, 1, 2].map(|k| c / 3 * 3 + (c + k) % 3)).collect()
-            }
+            Domain::Corner => self.corners.iter().flat_map(|&c| turns(c)).collect(),
             Domain::Face => self.corners.iter().map(|c| c / 3).collect(),
         }
     }

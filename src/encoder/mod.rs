@@ -26,6 +26,7 @@ use crate::mesh::repair::{RepairReport, cut};
 use crate::mesh::{Attributes, has_three_vertices};
 use crate::passes::Malformed;
 use crate::{EncodeError, StreamInfo, TriMesh};
+use std::cell::OnceCell;
 
 /// Encodes a mesh.
 ///
@@ -75,7 +76,8 @@ pub fn encode_with_attributes(
     let points = usable().flatten().chain(&loose).map(|&v| mesh.positions()[v as usize]);
     let grid = quantise::grid_around(points, options.quantization)?;
     let mut loose_corners = trailing::loose_corners(mesh, options);
-    let signatures = || {
+    let once = OnceCell::new();
+    let make_signatures = || {
         let (vertices, corners) = surface_elements(mesh);
         let surface = Elements { vertices: &vertices, corners: &corners };
         Signatures::new(
@@ -86,11 +88,12 @@ pub fn encode_with_attributes(
             options,
         )
     };
+    let signatures = || once.get_or_init(make_signatures).as_ref();
     let (ordered, triangles) = order::order(mesh, &grid, &signatures);
     if !loose.is_empty() || !loose_corners.is_empty() {
-        let signatures = signatures();
-        trailing::sort_loose(&mut loose, mesh, &grid, signatures.as_ref());
-        trailing::sort_loose_corners(&mut loose_corners, mesh, &grid, signatures.as_ref());
+        let signatures: Option<&Signatures> = signatures();
+        trailing::sort_loose(&mut loose, mesh, &grid, signatures);
+        trailing::sort_loose_corners(&mut loose_corners, mesh, &grid, signatures);
     }
     let (surface, source) = cut(triangles, ordered.cells.len());
     if surface.corner_of.len() >= (u32::MAX / 4) as usize {

@@ -20,10 +20,10 @@ pub(super) struct Ordered {
 
 /// Puts the usable triangles of `mesh` and their vertices in order: triangles from their smallest vertex on,
 /// ascending. There are fewer than 2³⁰ of them. `signatures` are asked for where places do not tell all apart.
-pub(super) fn order(
+pub(super) fn order<'a>(
     mesh: &TriMesh,
     grid: &Grid,
-    signatures: &dyn Fn() -> Option<Signatures>,
+    signatures: &dyn Fn() -> Option<&'a Signatures>,
 ) -> (Ordered, Vec<[u32; 3]>) {
     let mut usable: Vec<(u32, [u32; 3])> =
         (0..).zip(mesh.triangles().iter().copied()).filter(|(_, t)| has_three_vertices(t)).collect();

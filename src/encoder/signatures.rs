@@ -4,6 +4,7 @@
 use super::attributes::{Elements, quantise};
 use super::options::EncodeOptions;
 use crate::TriMesh;
+use crate::mesh::surface::turns;
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Values};
 use crate::passes::attribute::Coding;
 
@@ -71,8 +72,8 @@ impl Signatures {
 
     /// What tells a triangle apart that begins with a corner.
     pub(super) fn triangle(&self, corner: u32) -> u64 {
-        let at = |k: u32| self.corners[(corner / 3 * 3 + (corner + k) % 3) as usize];
-        [at(0), at(1), at(2)].into_iter().fold(self.faces[(corner / 3) as usize], |hash, c| mix(hash ^ c))
+        let corners = turns(corner).map(|c| self.corners[c as usize]);
+        corners.into_iter().fold(self.faces[(corner / 3) as usize], |hash, c| mix(hash ^ c))
     }
 
     /// What a corner tells the vertex at it.

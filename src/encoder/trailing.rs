@@ -13,6 +13,7 @@ use crate::bitstream::header::{Grid, MAX_VERTICES_PER_BYTE};
 use crate::bitstream::range_coder::RangeEncoder;
 use crate::decoder::assemble::Extras;
 use crate::mesh::has_three_vertices;
+use crate::mesh::surface::turns;
 use crate::morton::morton;
 use crate::passes::GridMesh;
 use crate::passes::attribute::Rows;
@@ -67,13 +68,12 @@ pub(super) fn sort_loose_corners(
     signatures: Option<&Signatures>,
 ) {
     let turn = |corner: u32| {
-        let t = mesh.triangles()[(corner / 3) as usize];
-        let cell = |i: u32| grid.cell(mesh.positions()[t[((corner + i) % 3) as usize] as usize]);
-        ([cell(0), cell(1), cell(2)], signatures.map(|s| s.triangle(corner)))
+        let vertices = turns(corner).map(|c| mesh.triangles().as_flattened()[c as usize]);
+        let cells = vertices.map(|v| grid.cell(mesh.positions()[v as usize]));
+        (cells, signatures.map(|s| s.triangle(corner)))
     };
     for corner in corners.iter_mut() {
-        let turns = [0, 1, 2].map(|k| *corner / 3 * 3 + (*corner + k) % 3);
-        *corner = turns.into_iter().min_by_key(|&turned| turn(turned)).unwrap_or(*corner);
+        *corner = turns(*corner).into_iter().min_by_key(|&turned| turn(turned)).unwrap_or(*corner);
     }
     corners.sort_by_cached_key(|&corner| turn(corner));
 }
@@ -171,15 +171,11 @@ impl Exact<'_> {
         let cells = self.loose.iter().map(|&v| self.grid.cell(self.mesh.positions()[v as usize])).collect();
         let mut place = vec![0_u32; self.mesh.num_vertices()];
         vertices.iter().zip(0..).for_each(|(&v, i)| place[v as usize] = i);
+        let vertex = |corner: u32| self.mesh.triangles().as_flattened()[corner as usize];
+        let triangle = |corner: u32| turns(corner).map(|c| place[vertex(c) as usize]);
         let turned = |&corner: &u32| {
-            let triangle = self.mesh.triangles()[(corner / 3) as usize].map(|v| place[v as usize]);
-            let turn = |k: u32| {
-                let first = (corner + k) % 3;
-                ([0, 1, 2].map(|i| triangle[(first as usize + i) % 3]), corner / 3 * 3 + first)
-            };
-            [turn(1), turn(2)]
-                .into_iter()
-                .fold(turn(0), |best, next| if next.0 < best.0 { next } else { best })
+            let first = turns(corner).into_iter().min_by_key(|&c| triangle(c)).unwrap_or(corner);
+            (triangle(first), first)
         };
         let mut faces: Vec<([u32; 3], u32)> = self.loose_corners.iter().map(turned).collect();
         faces.sort_by_key(|&(t, _)| t);

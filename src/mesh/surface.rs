@@ -23,6 +23,12 @@ pub fn prev(corner: u32) -> u32 {
     if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 }
 }
 
+/// The corners of a triangle from this one on.
+#[cfg(any(feature = "encoder", feature = "assets"))]
+pub fn turns(corner: u32) -> [u32; 3] {
+    [corner, next(corner), prev(corner)]
+}
+
 /// An oriented triangle surface, possibly with boundary, of any number of components: every
 /// directed edge belongs to at most one triangle.
 #[derive(Clone, Debug, Default)]

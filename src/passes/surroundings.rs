@@ -21,7 +21,7 @@ pub(crate) struct Surroundings {
     pub(crate) origin: [i32; 3],
     /// Which of the [`NUM_CLASSES`] classes the vertex is in.
     pub(crate) class: usize,
-    pub(super) corners: Vec<u32>,
+    corners: Vec<u32>,
     /// Base-2 logarithms of residual over edge length: mean of the ring along and across the
     /// surface; mean of the outer vertices of this level (when refining, of the vertex itself), too.
     pub(crate) roughness: Lanes,
@@ -206,20 +206,20 @@ impl Surroundings {
 }
 
 #[derive(Default)]
-pub(super) struct RoughnessMean {
+struct RoughnessMean {
     sum: [i32; 2],
     count: i32,
 }
 
 impl RoughnessMean {
-    pub(super) fn add(&mut self, mesh: &GridMesh, vertex: u32) {
+    fn add(&mut self, mesh: &GridMesh, vertex: u32) {
         let [along, across] = mesh.roughness[vertex as usize];
         self.sum[0] += i32::from(along);
         self.sum[1] += i32::from(across);
         self.count += 1;
     }
 
-    pub(super) fn mean(&self) -> Option<[f32; 2]> {
+    fn mean(&self) -> Option<[f32; 2]> {
         (self.count > 0).then(|| self.sum.map(|s| s as f32 / (8 * self.count) as f32))
     }
 }

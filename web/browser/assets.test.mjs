@@ -4,16 +4,7 @@ import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { open, out, view } from './setup.mjs';
-
-async function keep(t, promise) {
-  const opened = await promise;
-  t.after(opened.close);
-  return opened;
-}
-
-const whenComplete = (page) => page.waitForFunction(() => globalThis.lwc?.complete, undefined, { timeout: 60_000 });
-const shot = (page, name) => page.screenshot({ path: join(out, `${name}.png`) });
+import { keep, open, out, shot, view, whenComplete } from './setup.mjs';
 
 /** How much redder than blue the drawn pixels are, the least and the largest of a hundred parts. */
 const tints = (page) =>

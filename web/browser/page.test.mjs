@@ -1,8 +1,7 @@
 // The page in a real browser: something at once, finer while it loads, exact at the end.
 import assert from 'node:assert/strict';
-import { join } from 'node:path';
 import { before, test } from 'node:test';
-import { arrays, model, nativeDecode, open, out, record, servePage, view } from './setup.mjs';
+import { arrays, keep, model, nativeDecode, open, record, servePage, shot, view, whenComplete } from './setup.mjs';
 
 let rock;
 let exact;
@@ -11,15 +10,6 @@ before(() => {
   exact = nativeDecode(rock.path);
 });
 
-/** Waits for what can be closed, and has it closed when the test is over. */
-async function keep(t, promise) {
-  const opened = await promise;
-  t.after(opened.close);
-  return opened;
-}
-
-const whenComplete = (page) => page.waitForFunction(() => globalThis.lwc?.complete, undefined, { timeout: 60_000 });
-const shot = (page, name) => page.screenshot({ path: join(out, `${name}.png`) });
 const whenBytes = (page, share) =>
   page.waitForFunction(
     (share) => {

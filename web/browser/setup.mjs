@@ -128,3 +128,14 @@ export async function arrays(page) {
   const bytes = (text) => Uint8Array.from(Buffer.from(text, 'base64')).buffer;
   return { positions: new Float32Array(bytes(positions)), indices: new Uint32Array(bytes(indices)) };
 }
+
+/** Waits for what can be closed, and has it closed when the test is over. */
+export async function keep(t, promise) {
+  const opened = await promise;
+  t.after(opened.close);
+  return opened;
+}
+
+export const whenComplete = (page) =>
+  page.waitForFunction(() => globalThis.lwc?.complete, undefined, { timeout: 60_000 });
+export const shot = (page, name) => page.screenshot({ path: join(out, `${name}.png`) });

@@ -88,18 +88,6 @@ pub struct Texts {
     names: Vec<CString>,
 }
 
-const SCALARS: [ScalarType; 8] = [
-    ScalarType::I8,
-    ScalarType::U8,
-    ScalarType::I16,
-    ScalarType::U16,
-    ScalarType::I32,
-    ScalarType::U32,
-    ScalarType::F32,
-    ScalarType::F64,
-];
-const DOMAINS: [Domain; 3] = [Domain::Vertex, Domain::Corner, Domain::Face];
-
 impl Texts {
     pub fn of(attributes: &Attributes) -> Vec<Self> {
         attributes.list.iter().map(Self::new).collect()
@@ -205,7 +193,8 @@ pub unsafe extern "C" fn lwc_mesh_add_attribute(
     guard(|| {
         // SAFETY: the caller's promise.
         let (mesh, what) = unsafe { (object(mesh)?, what.as_ref().ok_or(Status::NullPointer)?) };
-        let domain = DOMAINS.get(what.domain as usize).ok_or_else(|| misfit("there is no such domain"))?;
+        let domain =
+            Domain::ALL.get(what.domain as usize).ok_or_else(|| misfit("there is no such domain"))?;
         let semantic = semantic(what.kind, what.set).ok_or_else(|| misfit("there is no such kind"))?;
         let count = what.num_rows.checked_mul(what.components as usize);
         let count = count.ok_or_else(|| misfit("the table is too large"))?;
@@ -283,9 +272,9 @@ pub unsafe extern "C" fn lwc_mesh_attribute(
         // SAFETY: the caller's promise.
         let (_, attribute, texts) = unsafe { attribute(mesh, index) }?;
         let (kind, set) = kind(attribute.semantic);
-        let place = |scalar| SCALARS.iter().position(|&other| other == scalar);
+        let place = |scalar| ScalarType::ALL.iter().position(|&other| other == scalar);
         let scalar = attribute.values.scalar_type().and_then(place).unwrap_or(AttributeType::Names as usize);
-        let domain = DOMAINS.iter().position(|&domain| domain == attribute.domain).unwrap_or(0);
+        let domain = Domain::ALL.iter().position(|&domain| domain == attribute.domain).unwrap_or(0);
         let what = Attribute {
             name: texts.name.as_ptr(),
             kind: kind as u32,

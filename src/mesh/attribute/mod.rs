@@ -71,6 +71,9 @@ pub enum Domain {
 }
 
 impl Domain {
+    /// Every domain, in the order of the variants.
+    pub const ALL: [Self; 3] = [Self::Vertex, Self::Corner, Self::Face];
+
     /// How many elements `mesh` has.
     pub fn num_elements(self, mesh: &TriMesh) -> usize {
         match self {

@@ -22,6 +22,10 @@ pub enum ScalarType {
 }
 
 impl ScalarType {
+    /// Every type, in the order of the variants.
+    pub const ALL: [Self; 8] =
+        [Self::I8, Self::U8, Self::I16, Self::U16, Self::I32, Self::U32, Self::F32, Self::F64];
+
     /// Bytes of one number, 1 to 8.
     pub fn num_bytes(self) -> usize {
         match self {

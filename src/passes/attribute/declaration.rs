@@ -50,17 +50,6 @@ pub(crate) struct Declarations {
     pub(crate) bytes: Vec<u32>,
 }
 
-const DOMAINS: [Domain; 3] = [Domain::Vertex, Domain::Corner, Domain::Face];
-const SCALARS: [ScalarType; 8] = [
-    ScalarType::I8,
-    ScalarType::U8,
-    ScalarType::I16,
-    ScalarType::U16,
-    ScalarType::I32,
-    ScalarType::U32,
-    ScalarType::F32,
-    ScalarType::F64,
-];
 const NAMES: u8 = 8;
 const NORMALIZED: u8 = 1;
 const HAS_MISSING: u8 = 2;
@@ -185,11 +174,11 @@ fn read_declaration(reader: &mut Reader) -> Option<Declaration> {
         6 => Semantic::Object,
         _ => return None,
     };
-    let domain = *DOMAINS.get(usize::from(reader.u8()?))?;
+    let domain = *Domain::ALL.get(usize::from(reader.u8()?))?;
     let flags = reader.u8()?;
     let scalar = match reader.u8()? {
         NAMES => None,
-        code => Some(*SCALARS.get(usize::from(code))?),
+        code => Some(*ScalarType::ALL.get(usize::from(code))?),
     };
     let num_components = reader.varint()? as usize;
     let most = if scalar.is_none() { 1 } else { MAX_COMPONENTS };
@@ -263,10 +252,10 @@ fn write_declaration(out: &mut Vec<u8>, declaration: &Declaration) {
     if let Some(set) = set {
         write_varint(out, set);
     }
-    out.push(DOMAINS.iter().position(|&d| d == declaration.domain).unwrap_or(0) as u8);
+    out.push(Domain::ALL.iter().position(|&d| d == declaration.domain).unwrap_or(0) as u8);
     let flag = |is_set: bool, flag: u8| if is_set { flag } else { 0 };
     out.push(flag(declaration.is_normalized, NORMALIZED) | flag(declaration.has_missing, HAS_MISSING));
-    let place = |scalar| SCALARS.iter().position(|&s| s == scalar).unwrap_or(0) as u8;
+    let place = |scalar| ScalarType::ALL.iter().position(|&s| s == scalar).unwrap_or(0) as u8;
     out.push(declaration.scalar.map_or(NAMES, place));
     write_varint(out, declaration.num_components as u32);
     match &declaration.coding {
