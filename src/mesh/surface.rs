@@ -24,7 +24,6 @@ pub fn prev(corner: u32) -> u32 {
 }
 
 /// The corners of a triangle from this one on.
-#[cfg(any(feature = "encoder", feature = "assets"))]
 pub fn turns(corner: u32) -> [u32; 3] {
     [corner, next(corner), prev(corner)]
 }
