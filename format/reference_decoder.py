@@ -2631,6 +2631,76 @@ def read_announced(payload):
     return glue, trailing
 
 
+def read_compensation(payload, count):
+    """Section 4.8: both weights after each pass but the last."""
+    bits = Bits(payload)
+    now, weights = [0, 0], []
+    for _ in range(count):
+        if bits.bit():
+            for k in 0, 1:
+                n = bits.number(1)
+                now[k] += -(n + 1) // 2 if n % 2 else n // 2
+            require(max(map(abs, now)) <= 64, "the compensation")
+        weights.append(tuple(now))
+    require(bits.is_at_end(), "the compensation")
+    return weights
+
+
+def dot(a, b):
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
+
+
+def shown(grid, mesh, weights):
+    """Section 9.4: positions of all vertices."""
+    size = len(mesh.cell)
+    s, n = [[[0.0] * 3 for _ in range(size)] for _ in range(2)]
+    d, e, around = [0] * size, [0] * size, [0.0] * size
+    add = lambda x, y: [p + q for p, q in zip(x, y)]
+    sub = lambda x, y: [p - q for p, q in zip(x, y)]
+    for t in mesh.triangle:
+        a, b, c = ([float(x) for x in mesh.cell[v]] for v in t)
+        p, q = sub(b, a), sub(c, a)
+        m = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+        for k in range(3):
+            v, x, y = (t[(k + i) % 3] for i in range(3))
+            at = [float(z) for z in mesh.cell[v]]
+            s[v] = add(s[v], add(sub(mesh.cell[x], at), sub(mesh.cell[y], at)))
+            n[v] = add(n[v], m)
+            d[v], e[v] = d[v] + 1, e[v] + x - y
+    bend = []
+    for v in range(size):
+        length = math.sqrt(dot(n[v], n[v]))
+        n[v] = [x / length for x in n[v]] if length > 0 else [0.0] * 3
+        bend.append(dot(s[v], n[v]) / (2 * d[v]) if e[v] % (1 << 32) == 0 and d[v] else 0.0)
+    for a, b, c in mesh.triangle:
+        around[a] += bend[b] + bend[c]
+        around[b] += bend[c] + bend[a]
+        around[c] += bend[a] + bend[b]
+    full, _, side = grid
+    step = side / ((1 << full) - 1) * (1 << (full - mesh.precision))
+    places = []
+    for v in range(size):
+        place = position(grid, mesh.cell[v], mesh.precision)
+        if e[v] % (1 << 32) == 0 and d[v]:
+            h = (weights[0] * bend[v] + weights[1] * (around[v] / (2 * d[v]))) / 64
+            place = [x + (-h * y) * step for x, y in zip(place, n[v])]
+        places.append(place)
+    return places
+
+
+class Shown:
+    """A mesh as it is shown."""
+
+    def __init__(self, grid, mesh, weights):
+        self.precision, self.cell, self.triangle = mesh.precision, mesh.cell, mesh.triangle
+        self.places = shown(grid, mesh, weights)
+
+    def checksum(self):
+        data = struct.pack("<II", len(self.places), len(self.triangle))
+        data += b"".join(struct.pack("<3d", *place) for place in self.places)
+        return zlib.crc32(data + b"".join(struct.pack("<3I", *t) for t in self.triangle))
+
+
 def read_table(payload, grid_precision):
     """Rows of kind, vertices, faces, bytes; and the precision of the base mesh."""
     bits = Bits(payload)
@@ -2669,9 +2739,9 @@ def read_table(payload, grid_precision):
 
 
 def decode(stream):
-    """Yields kind, level and mesh after each pass, "values" and the attributes after each pass if there are any; at the end the
+    """Yields kind, level and mesh after each pass, "shown" and how it is shown if that differs, "values" and the attributes after each pass if there are any; at the end the
     whole mesh if there is more to it, and "end" with the whole mesh and the attributes if there are any."""
-    grid = rows = mesh = announced = None
+    grid = rows = mesh = announced = weights = None
     glue, awaited, whole = Glue(), [], None
     declared, values, known = None, [], set()
     level_, done = 0, 0
@@ -2700,6 +2770,9 @@ def decode(stream):
         elif kind == "t" and rows is None:
             require(announced is None, "a chunk out of order")
             announced = read_announced(payload)
+        elif kind == "c" and rows is None:
+            require(weights is None, "a chunk out of order")
+            weights = payload
         elif kind in "dnm" and rows is None:
             require(kind not in known, "a chunk out of order")
             known.add(kind)
@@ -2717,6 +2790,7 @@ def decode(stream):
             require(grid and rows is None, "a chunk out of order")
             rows, precision = read_table(payload, grid[0])
             ahead.extend(rows)
+            weights = read_compensation(weights, len(rows) - 1) + [(0, 0)] if weights is not None else None
             require(all(i < len(rows) for i in (announced or ({}, []))[0]), "glue behind no pass")
             if declared:
                 check_sizes(*declared, rows)
@@ -2742,6 +2816,8 @@ def decode(stream):
             coder.check_end()
             done += 1
             yield {"B": "base", "S": "split", "R": "refine"}[kind], level_, mesh
+            if weights and any(weights[done - 1]):
+                yield "shown", level_, Shown(grid, mesh, weights[done - 1])
             if values and kind != "R":
                 awaited = [("a", declared[1][done - 1])]
             elif values:
@@ -2768,7 +2844,7 @@ def checksum_of_rows(values):
 
 def lines_of(path):
     """Lines as in checksums.txt and as in attributes.txt."""
-    meshes, attributes = [], []
+    meshes, attributes, shows = [], [], 0
     for kind, level_, mesh in decode(path.read_bytes()):
         if kind == "values":
             attributes.append("%s %d %08x" % (path.name, len(attributes), checksum_of_rows(mesh)))
@@ -2778,8 +2854,9 @@ def lines_of(path):
             attributes.append("%s end %08x" % (path.name, whole.checksum_of_values(values)))
             continue
         precision = (mesh.mesh if kind == "whole" else mesh).precision
-        numbers_ = len(meshes), kind, level_, precision, len(mesh.cell), len(mesh.triangle), mesh.checksum()
+        numbers_ = len(meshes) - shows - (kind == "shown"), kind, level_, precision, len(mesh.cell), len(mesh.triangle), mesh.checksum()
         meshes.append("%s %d %s %d %d %d %d %08x" % (path.name, *numbers_))
+        shows += kind == "shown"
     return meshes, attributes
 
 

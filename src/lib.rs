@@ -43,8 +43,8 @@ mod simplify;
 mod thinning;
 
 pub use decoder::{
-    AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Step, StreamInfo, TrailingInfo,
-    TrailingKind, Update, decode,
+    AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Placing, Step, StreamInfo,
+    TrailingInfo, TrailingKind, Update, decode,
 };
 #[cfg(feature = "encoder")]
 pub use encoder::{EncodeOptions, Encoded, Progress, encode, encode_with_attributes, encode_with_progress};

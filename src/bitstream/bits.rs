@@ -48,10 +48,19 @@ impl<'a> BitReader<'a> {
 
     /// A number of 32 bits, see [`BitWriter::near`].
     pub(crate) fn near(&mut self, expected: u32) -> Option<u32> {
-        let folded = self.long(fixed_bits(expected))?;
+        u32::try_from(i64::from(expected) + self.folded(fixed_bits(expected))?).ok()
+    }
+
+    /// A signed number, see [`BitWriter::signed`].
+    pub(crate) fn signed(&mut self, fixed: u32) -> Option<i32> {
+        self.folded(fixed).and_then(|n| i32::try_from(n).ok())
+    }
+
+    /// 0, −1, 1, −2, …
+    fn folded(&mut self, fixed: u32) -> Option<i64> {
+        let folded = self.long(fixed)?;
         let half = i64::try_from(folded >> 1).ok()?;
-        let change = if folded & 1 == 0 { half } else { -half - 1 };
-        u32::try_from(i64::from(expected) + change).ok()
+        Some(if folded & 1 == 0 { half } else { -half - 1 })
     }
 
     /// True if nothing but the zeros that fill the last byte is left.
@@ -101,9 +110,17 @@ impl BitWriter {
 
     /// Appends a number that is mostly within an eighth of `expected`.
     pub(crate) fn near(&mut self, value: u32, expected: u32) {
-        let change = i64::from(value) - i64::from(expected);
-        let folded = if change >= 0 { 2 * change } else { -2 * change - 1 };
-        self.long(folded.unsigned_abs(), fixed_bits(expected));
+        self.folded(i64::from(value) - i64::from(expected), fixed_bits(expected));
+    }
+
+    /// Appends a number that is rarely beyond 2^(`fixed` − 1) either way.
+    pub(crate) fn signed(&mut self, value: i32, fixed: u32) {
+        self.folded(value.into(), fixed);
+    }
+
+    fn folded(&mut self, value: i64, fixed: u32) {
+        let folded = if value >= 0 { 2 * value } else { -2 * value - 1 };
+        self.long(folded.unsigned_abs(), fixed);
     }
 
     /// The bytes, the last one filled with zeros.

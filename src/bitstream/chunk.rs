@@ -30,6 +30,8 @@ pub(crate) mod kind {
     pub(crate) const HEADER: u8 = b'H';
     pub(crate) const PROVENANCE: u8 = b'p';
     pub(crate) const PASSES: u8 = b'L';
+    /// How coarse meshes are shown.
+    pub(crate) const COMPENSATION: u8 = b'c';
     pub(crate) const BASE: u8 = b'B';
     pub(crate) const SPLIT: u8 = b'S';
     pub(crate) const REFINE: u8 = b'R';
@@ -54,7 +56,7 @@ pub(crate) mod kind {
 
     /// True if a known kind has its place in front of a pass or directly behind one.
     pub(crate) fn is_known_elsewhere(kind: u8) -> bool {
-        matches!(kind, PROVENANCE | SCENE | DECLARATIONS | ATTRIBUTES | ANNOUNCED | GLUE)
+        matches!(kind, PROVENANCE | COMPENSATION | SCENE | DECLARATIONS | ATTRIBUTES | ANNOUNCED | GLUE)
     }
 
     /// True if the chunk is a pass: the table of passes knows its length.

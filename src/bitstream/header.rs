@@ -33,6 +33,12 @@ impl Grid {
         })
     }
 
+    /// Side of the cells of `precision` bits.
+    pub(crate) fn step(&self, precision: u32) -> f64 {
+        self.side / f64::from((1_u32 << self.precision) - 1)
+            * f64::from(1_u32 << (self.precision - precision))
+    }
+
     /// Half the side of a cell of the full grid.
     pub(crate) fn half_step(&self) -> f64 {
         self.side / f64::from((1_u32 << self.precision) - 1) * 0.5

@@ -4,6 +4,7 @@ pub(crate) mod announced;
 pub(crate) mod bits;
 pub(crate) mod bytes;
 pub(crate) mod chunk;
+pub(crate) mod compensation;
 pub(crate) mod header;
 pub(crate) mod mixer;
 pub(crate) mod mixture;

@@ -241,6 +241,10 @@ pub struct Decode {
     /// Stop at this level; 0 is the base mesh. Default: the finest.
     #[arg(short, long, value_name = "K", allow_negative_numbers = true)]
     pub level: Option<u32>,
+    /// Leave the vertices of coarse levels where they are in the finest mesh. Else they are shown a little further out, so
+    /// that the mesh shrinks less where it is coarse.
+    #[arg(long)]
+    pub uncompensated: bool,
     /// Decode the first N bytes only, e.g. 5000 or 20K. Default: all.
     #[arg(short, long, value_name = "N", value_parser = quantity::bytes, allow_negative_numbers = true)]
     pub bytes: Option<u64>,

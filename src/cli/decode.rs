@@ -19,7 +19,7 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let (destination, format) = destination(args, source.path())?;
     destination.check(source.path(), format.is_text())?;
 
-    let mut options = DecodeOptions::new().limits(args.limits.limits());
+    let mut options = DecodeOptions::new().limits(args.limits.limits()).compensate(!args.uncompensated);
     if let Some(level) = args.level {
         options = options.level(level);
     }

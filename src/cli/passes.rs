@@ -25,6 +25,7 @@ pub fn to_json(info: &StreamInfo, present: u64) -> Value {
             "kind": pass.kind.name(),
             "level": pass.level,
             "precision": pass.precision,
+            "compensation": pass.compensation(),
             "vertices": pass.vertices,
             "faces": pass.faces,
             "odd_share": odd_share(info, i),

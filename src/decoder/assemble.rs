@@ -75,10 +75,11 @@ impl Extras {
         Joined::new(&self.roots, num_vertices)
     }
 
-    /// Cells of all vertices, given those of the surface: these joined, then the loose ones.
-    fn cells(&self, joined: &Joined, cells: &[[i32; 3]]) -> Vec<[i32; 3]> {
+    /// What all vertices have, given that of those of the surface: of these joined, then of the loose ones what their
+    /// cells give.
+    fn of_vertices<T: Copy>(&self, joined: &Joined, of: &[T], give: impl Fn([i32; 3]) -> T) -> Vec<T> {
         let loose = self.loose.iter().flat_map(|loose| &loose.cells);
-        joined.first.iter().map(|&v| cells[v as usize]).chain(loose.copied()).collect()
+        joined.first.iter().map(|&v| of[v as usize]).chain(loose.map(|&cell| give(cell))).collect()
     }
 
     /// All triangles, given those of the surface: these of joined vertices, then the loose ones.
@@ -87,21 +88,19 @@ impl Extras {
         joined.faces(triangles).map(|(_, triangle)| triangle).chain(loose.copied()).collect()
     }
 
-    /// The mesh whose surface has these `cells`, of `precision` bits, and `triangles`.
+    /// The mesh whose surface has these `triangles`; `positions` tells where the vertices are, loose ones are on the `grid`.
     pub(super) fn assemble(
         &self,
         grid: &Grid,
-        precision: u32,
-        cells: &[[i32; 3]],
+        positions: impl FnOnce() -> Vec<[f64; 3]>,
+        num_vertices: usize,
         triangles: &[[u32; 3]],
     ) -> TriMesh {
-        let joined = self.joined(cells.len());
+        let joined = self.joined(num_vertices);
         let faces = self.triangles(&joined, triangles);
         let positions = match &self.positions {
             Some(positions) => positions.clone(),
-            None => {
-                self.cells(&joined, cells).into_iter().map(|cell| grid.position(cell, precision)).collect()
-            }
+            None => self.of_vertices(&joined, &positions(), |cell| grid.position(cell, grid.precision)),
         };
         match &self.order {
             Some(order) => order.apply(&positions, &faces),
@@ -274,7 +273,7 @@ impl Extras {
     pub(super) fn read_exact(&mut self, chunk: Beside) -> Result<(), Refused> {
         let Beside { payload, mesh, grid, .. } = chunk;
         let ladders = exact::read_ladders(payload).ok_or(Malformed("the kinds of exact numbers"))?;
-        let cells = self.cells(&self.joined(mesh.positions.len()), &mesh.positions);
+        let cells = self.of_vertices(&self.joined(mesh.positions.len()), &mesh.positions, |cell| cell);
         chunk.check_memory(EXACT_PER_VERTEX * cells.len() as u64)?;
         let mut coder = RangeDecoder::new(&payload[exact::LADDER_BYTES..]);
         self.positions = Some(exact::code(&mut coder, grid, ladders, &cells, None)?);

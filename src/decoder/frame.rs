@@ -2,6 +2,7 @@
 
 use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, Frame, NextPass};
+use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::{Action, Grid, Pass, Provenance};
 use crate::bitstream::pass_table::{self, BadTable};
 use crate::limits::Limits;
@@ -154,10 +155,18 @@ pub struct PassInfo {
     pub glue_bytes: u64,
     /// Bytes of the stream up to the end of the pass and of the chunks that belong to it.
     pub end: u64,
+    pub(super) compensation: Compensation,
     pub(super) row: Pass,
 }
 
 impl PassInfo {
+    /// How far vertices are shown off their places after the pass ([`LevelMesh::positions`](crate::LevelMesh::positions)):
+    /// shares of the bend of a vertex, and of the mean bend of its neighbours.
+    pub fn compensation(&self) -> [f64; 2] {
+        let Compensation { own, around } = self.compensation;
+        [own, around].map(|weight| f64::from(weight) / Compensation::UNIT)
+    }
+
     /// What its chunk must be.
     pub(super) fn frame(&self) -> (u8, u32) {
         (self.row.action.kind(), self.row.bytes)
@@ -352,6 +361,14 @@ pub(super) fn printable(kind: u8) -> char {
     if kind.is_ascii_graphic() { char::from(kind) } else { '?' }
 }
 
+/// Notes how the mesh is shown behind each pass but the last, after which nothing is missing.
+pub(super) fn add_compensation(passes: &mut [PassInfo], payload: &[u8]) -> Result<(), BadTable> {
+    let Some((_, coarser)) = passes.split_last_mut() else { return Ok(()) };
+    let all = Compensation::read(payload, coarser.len()).ok_or(BadTable("the compensation"))?;
+    coarser.iter_mut().zip(all).for_each(|(pass, compensation)| pass.compensation = compensation);
+    Ok(())
+}
+
 /// Turns the table of passes into running totals. `start` is where the first pass begins, `attributes` the
 /// payload of the attributes behind each pass: as many rows, or none.
 pub(super) fn list_passes(
@@ -380,6 +397,7 @@ pub(super) fn list_passes(
                 attribute_bytes,
                 glue_bytes: 0,
                 end: start + with_companions,
+                compensation: Compensation::NONE,
                 row,
             },
             (_, None) => return Err(BadTable("the first pass is no base mesh")),
@@ -393,6 +411,7 @@ pub(super) fn list_passes(
                 attribute_bytes,
                 glue_bytes: 0,
                 end: before.end + with_companions,
+                compensation: Compensation::NONE,
                 row,
             },
         };

@@ -2,7 +2,9 @@
 
 use super::assemble::Extras;
 use crate::TriMesh;
+use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::Grid;
+use crate::lifting::compensation::Mover;
 
 /// A borrowed view of the finest complete mesh: valid until the decoder takes more bytes.
 #[derive(Clone, Copy)]
@@ -12,6 +14,7 @@ pub struct LevelMesh<'a> {
     pub(super) grid: &'a Grid,
     pub(super) precision: u32,
     pub(super) level: u32,
+    pub(super) compensation: Compensation,
     pub(super) extras: &'a Extras,
 }
 
@@ -46,18 +49,26 @@ impl<'a> LevelMesh<'a> {
         self.cells
     }
 
-    /// Position of one vertex in model units: the middle of its cell.
+    /// The middle of a vertex's cell in model units: on the surface that was encoded, but for the bits that have not come.
     ///
     /// # Panics
     /// If there is no such vertex.
-    pub fn position(&self, vertex: usize) -> [f64; 3] {
+    pub fn cell_middle(&self, vertex: usize) -> [f64; 3] {
         self.grid.position(self.cells[vertex], self.precision)
     }
 
-    /// Positions in model units, in order.
-    pub fn positions(&self) -> impl ExactSizeIterator<Item = [f64; 3]> + 'a {
-        let view = *self;
-        (0..self.num_vertices()).map(move |v| view.position(v))
+    /// Whether vertices are shown off the middles of their cells, see [`positions`](Self::positions).
+    pub fn is_compensated(&self) -> bool {
+        self.compensation != Compensation::NONE
+    }
+
+    /// Positions in model units, in order. A coarse mesh whose vertices lie on a curved surface lies inside of it: until
+    /// the last pass vertices are shown a little further out, as far as the encoder found to be best, unless
+    /// [`DecodeOptions::compensate`](crate::DecodeOptions::compensate) says otherwise.
+    pub fn positions(&self) -> Vec<[f64; 3]> {
+        let mut placing = Placing::new(self);
+        placing.advance(self, usize::MAX);
+        (0..self.num_vertices()).map(|v| placing.position(self, v)).collect()
     }
 
     /// The mesh that was encoded, as far as this level and the chunks that have come tell: vertices are
@@ -65,12 +76,12 @@ impl<'a> LevelMesh<'a> {
     /// last pass come loose vertices and faces, exact coordinates and the order of the file, if the stream has
     /// them.
     pub fn to_tri_mesh(&self) -> TriMesh {
-        self.extras.assemble(self.grid, self.precision, self.cells, self.triangles)
+        self.extras.assemble(self.grid, || self.positions(), self.num_vertices(), self.triangles)
     }
 
     /// The cut surface itself, in model units: a copy that owns its arrays.
     pub fn to_cut_mesh(&self) -> TriMesh {
-        TriMesh::from_valid_parts(self.positions().collect(), self.triangles.to_vec())
+        TriMesh::from_valid_parts(self.positions(), self.triangles.to_vec())
     }
 
     /// For each vertex of this cut surface the vertex of the joined one, and the number of those: before
@@ -94,6 +105,37 @@ impl<'a> LevelMesh<'a> {
             hash.update(&v.to_le_bytes());
         }
         hash.finalize()
+    }
+}
+
+/// Positions of a [`LevelMesh`] for callers that have other things to do in time.
+pub struct Placing(Option<Mover>);
+
+impl Placing {
+    /// Of `mesh`, and of no other.
+    pub fn new(mesh: &LevelMesh) -> Self {
+        Self(mesh.is_compensated().then(|| Mover::new(mesh.num_vertices())))
+    }
+
+    /// Goes on with at most `elements` vertices and triangles; once all positions are known, returns how many of these are
+    /// left.
+    pub fn advance(&mut self, mesh: &LevelMesh, elements: usize) -> Option<usize> {
+        match &mut self.0 {
+            Some(mover) => mover.advance(mesh.cells, mesh.triangles, elements),
+            None => Some(elements),
+        }
+    }
+
+    /// Position of a vertex in model units, one of [`LevelMesh::positions`].
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn position(&self, mesh: &LevelMesh, vertex: usize) -> [f64; 3] {
+        let middle = mesh.cell_middle(vertex);
+        let Some(mover) = &self.0 else { return middle };
+        let step = mesh.grid.step(mesh.precision);
+        let moved = mover.moved(vertex, mesh.compensation);
+        std::array::from_fn(|axis| middle[axis] + moved[axis] * step)
     }
 }
 

@@ -9,5 +9,5 @@ mod push;
 mod running;
 
 pub use frame::{AttributeInfo, PassInfo, PassKind, StreamInfo, TrailingInfo, TrailingKind};
-pub use level_mesh::LevelMesh;
+pub use level_mesh::{LevelMesh, Placing};
 pub use push::{DecodeOptions, Decoder, Step, Update, decode};

@@ -3,6 +3,7 @@
 mod analysis;
 mod attribute_writer;
 mod attributes;
+mod compensation;
 mod options;
 mod order;
 pub(crate) mod quantise;
@@ -117,6 +118,7 @@ pub fn encode_with_attributes(
     let (ordered, source, loose) = (&ordered, &source[..], &loose[..]);
     let loose_corners = &loose_corners[..];
     let exact = Exact { mesh, grid: &grid, ordered, source, loose, loose_corners, values, options };
+    let points = compensation::points(&surface, &cells);
     let attempts = options.hierarchies_tried();
     let mut surface = Some(surface);
     let mut bytes: Vec<u8> = Vec::new();
@@ -131,7 +133,7 @@ pub fn encode_with_attributes(
         for &steps in tried {
             let steps = options.steps_per_edge.or(steps);
             let schedule = schedule::plan(&hierarchy, options.quantization, steps);
-            let new = write::write(&hierarchy, &cells, &quantised, &exact, &schedule, progress);
+            let new = write::write(&hierarchy, &cells, &quantised, &exact, &points, &schedule, progress);
             if bytes.is_empty() || new.len() < bytes.len() {
                 bytes = new;
             }

@@ -3,6 +3,7 @@
 use super::analysis::{ANALYSIS_SHARE, Hierarchy};
 use super::attribute_writer::AttributeWriter;
 use super::attributes::Quantised;
+use super::compensation::{Fitter, Point};
 use super::options::Progress;
 use super::schedule::{Schedule, Step};
 use super::scout::{Found, Names, Scout};
@@ -11,6 +12,7 @@ use super::{expect_sound, padded};
 use crate::Profile;
 use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
+use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::{Action, Header, MAX_VERTICES_PER_BYTE, Pass, Provenance};
 use crate::bitstream::pass_table;
 use crate::bitstream::range_coder::RangeEncoder;
@@ -36,11 +38,12 @@ pub(super) fn write(
     cells: &[[i32; 3]],
     attributes: &Quantised,
     exact: &Exact,
+    points: &[Point],
     schedule: &Schedule,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Vec<u8> {
     let (mut writer, mut names) =
-        PassWriter::new(hierarchy, cells, attributes, exact, schedule.base_precision);
+        PassWriter::new(hierarchy, cells, attributes, exact, points, schedule.base_precision);
     let mut scout = Scout::new(hierarchy.num_faces);
     let is_split = |step: &&Step| matches!(step, Step::Split(_));
     let num_first = schedule.steps.iter().take_while(|step| !is_split(step)).count();
@@ -135,9 +138,14 @@ fn assemble(
     if !announced.is_empty() {
         chunk::write(&mut bytes, kind::ANNOUNCED, &announced.write());
     }
+    let coarser = &passes[..passes.len() - 1];
+    let compensation: Vec<Compensation> = coarser.iter().map(|pass| pass.compensation).collect();
+    if compensation.iter().any(|&compensation| compensation != Compensation::NONE) {
+        chunk::write(&mut bytes, kind::COMPENSATION, &Compensation::write(&compensation));
+    }
     let rows: Vec<Pass> = passes.iter().map(|pass| pass.row).collect();
     chunk::write(&mut bytes, kind::PASSES, &pass_table::write_passes(&rows));
-    for (i, WrittenPass { row, payload, glue }) in passes.iter().enumerate() {
+    for (i, WrittenPass { row, payload, glue, .. }) in passes.iter().enumerate() {
         chunk::write(&mut bytes, row.action.kind(), payload);
         if let Some(values) = values.get(i).filter(|values| !values.is_empty()) {
             chunk::write(&mut bytes, kind::ATTRIBUTES, values);
@@ -157,6 +165,7 @@ struct WrittenPass {
     row: Pass,
     payload: Vec<u8>,
     glue: Option<Vec<u8>>,
+    compensation: Compensation,
 }
 
 /// The decoder's state.
@@ -172,6 +181,8 @@ struct PassWriter<'a> {
     passes: Vec<WrittenPass>,
     /// Vertex of the joined surface for each vertex of the full one.
     source: &'a [u32],
+    fitter: Fitter<'a>,
+    num_faces: usize,
     glue: GlueModels,
     roots: Vec<u32>,
     /// Vertices before the present pass.
@@ -186,6 +197,7 @@ impl<'a> PassWriter<'a> {
         cells: &'a [[i32; 3]],
         attributes: &'a Quantised,
         exact: &Exact<'a>,
+        points: &'a [Point],
         precision: u32,
     ) -> (Self, Names) {
         let full_precision = exact.grid.precision;
@@ -214,6 +226,8 @@ impl<'a> PassWriter<'a> {
             attributes: AttributeWriter::new(attributes),
             passes: Vec::new(),
             source: exact.source,
+            fitter: Fitter::new(points, &hierarchy.records, cells),
+            num_faces: hierarchy.num_faces,
             glue: GlueModels::default(),
             roots: Vec::new(),
             num_seen: 0,
@@ -236,7 +250,11 @@ impl<'a> PassWriter<'a> {
         let payload = padded(payload, touched as u64, u64::from(MAX_VERTICES_PER_BYTE));
         row.bytes = payload.len() as u32;
         let glue = self.glue_of_new_vertices(&names.vertex_source);
-        self.passes.push(WrittenPass { row, payload, glue });
+        let hidden = self.full_precision - self.precision;
+        let is_last = hidden == 0 && self.mesh.surface.triangles.len() == self.num_faces;
+        let mut fit = || self.fitter.fit(&self.mesh, &names.vertex_source, hidden);
+        let compensation = if is_last { Compensation::NONE } else { fit() };
+        self.passes.push(WrittenPass { row, payload, glue, compensation });
     }
 
     /// Payload of the glue behind a pass, if one of its vertices is the same as one that is there.

@@ -8,6 +8,49 @@ pub(crate) fn squared_distance(p: DVec3, triangle: &[DVec3; 3]) -> f64 {
     Triangle::new(triangle).squared_distance(p)
 }
 
+/// Barycentric coordinates of the point of a triangle that is closest to `p` (Ericson, Real-Time Collision Detection,
+/// 5.1.5).
+#[cfg(feature = "encoder")]
+pub(crate) fn closest_shares(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> [f64; 3] {
+    let (ab, ac) = (b - a, c - a);
+    let [pa, pb, pc] = [a, b, c].map(|corner| p - corner);
+    let (d1, d2) = (ab.dot(pa), ac.dot(pa));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let (d3, d4) = (ab.dot(pb), ac.dot(pb));
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let v = share_of(d1, -d3);
+        return [1.0 - v, v, 0.0];
+    }
+    let (d5, d6) = (ab.dot(pc), ac.dot(pc));
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let w = share_of(d2, -d6);
+        return [1.0 - w, 0.0, w];
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        let w = share_of(d4 - d3, d5 - d6);
+        return [0.0, 1.0 - w, w];
+    }
+    let sum = va + vb + vc;
+    if sum > 0.0 { [va / sum, vb / sum, vc / sum] } else { [1.0, 0.0, 0.0] }
+}
+
+/// x / (x + y), 0 where an edge has no length.
+#[cfg(feature = "encoder")]
+fn share_of(x: f64, y: f64) -> f64 {
+    if x + y > 0.0 { x / (x + y) } else { 0.0 }
+}
+
 /// A triangle to which many distances are asked.
 pub(crate) struct Triangle {
     a: DVec3,
@@ -86,6 +129,13 @@ mod tests {
         ] {
             let squared = squared_distance(DVec3::from(point), &triangle);
             assert!((squared - expected).abs() < 1e-12, "{point:?}: {squared} is not {expected}");
+            #[cfg(feature = "encoder")]
+            {
+                let shares = closest_shares(DVec3::from(point), &triangle);
+                let closest: DVec3 = triangle.iter().zip(shares).map(|(&corner, share)| corner * share).sum();
+                assert!((closest.distance_squared(DVec3::from(point)) - expected).abs() < 1e-12, "{point:?}");
+                assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            }
         }
     }
 

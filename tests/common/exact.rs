@@ -116,7 +116,7 @@ pub fn assert_exact(mesh: &TriMesh, precision: u32, stream: &[u8], report: &Repa
     let info = decoder.info().expect("a complete stream has a table");
     let steps = 2f64.powi(precision as i32) - 1.0;
     let magnitude = info.origin().iter().fold(info.side(), |m, o| m.max(o.abs()));
-    for (position, cell) in decoded.positions().zip(decoded.cells()) {
+    for (position, cell) in decoded.positions().into_iter().zip(decoded.cells()) {
         for axis in 0..3 {
             let wanted = info.origin()[axis] + f64::from(cell[axis]) / steps * info.side();
             // A handful of roundings of numbers up to `magnitude`, or of the smallest numbers.

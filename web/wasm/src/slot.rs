@@ -1,7 +1,7 @@
 //! One decoder and what its caller may look at.
 
 use crate::shading::{self, Shading};
-use lwc::{DecodeError, DecodeOptions, Decoder, LevelMesh, PassKind, Step, Update};
+use lwc::{DecodeError, DecodeOptions, Decoder, LevelMesh, PassKind, Placing, Step, Update};
 
 /// Runs of rewritten triangles this near to each other are given as one: the triangles between cost less
 /// than the numbers.
@@ -15,6 +15,8 @@ pub struct Slot {
     positions: Vec<[f32; 3]>,
     /// Vertices from this one on have moved since their positions were computed.
     fresh: usize,
+    /// Where they are shown, of the mesh after the last pass.
+    placing: Option<Placing>,
     shading: Option<Shading>,
     report: Vec<u32>,
     info: Vec<f64>,
@@ -31,6 +33,7 @@ impl Slot {
             relative,
             positions: Vec::new(),
             fresh: 0,
+            placing: None,
             shading: shade.then(Shading::default),
             report: Vec::new(),
             info: Vec::new(),
@@ -74,6 +77,7 @@ impl Slot {
 
     fn apply(&mut self, update: &Update) {
         self.fresh = self.fresh.min(update.vertices.start as usize);
+        self.placing = None;
         if let Some(shading) = &mut self.shading {
             shading.restart();
         }
@@ -97,13 +101,14 @@ impl Slot {
         let (Some(mesh), Some(info)) = (self.decoder.mesh(), self.decoder.info()) else { return true };
         let origin = if self.relative { info.origin() } else { [0.0; 3] };
         let count = mesh.num_vertices();
-        let mut left = elements;
+        let placing = self.placing.get_or_insert_with(|| Placing::new(&mesh));
+        let Some(mut left) = placing.advance(&mesh, elements) else { return false };
         let end = count.min(self.fresh.saturating_add(left));
         left -= end - self.fresh;
         self.positions.truncate(self.fresh);
         self.positions.reserve_exact(count - self.fresh);
         self.positions.extend((self.fresh..end).map(|v| {
-            let position = mesh.position(v);
+            let position = placing.position(&mesh, v);
             std::array::from_fn::<_, 3, _>(|axis| (position[axis] - origin[axis]) as f32)
         }));
         self.fresh = end;
