@@ -253,15 +253,22 @@ fn the_leading_chunks_must_be_there_once_and_in_order() {
     let (name, stream) = streams().swap_remove(0);
     let parts = chunks::split(&stream);
     let kinds: Vec<u8> = parts.iter().take_while(|c| !c.is_pass()).map(|c| c.kind).collect();
-    assert_eq!(kinds, b"HpL");
+    assert_eq!(kinds, b"HpcL");
+    // How coarse meshes are shown changes no cell.
+    let uncompensated = [&parts[..2], &parts[3..]].concat();
+    let (decoder, error) = decode_all(&chunks::join(&uncompensated), Limits::default(), name);
+    assert_eq!((error, decoder.is_complete()), (None, true));
+    assert_eq!(decoder.mesh().unwrap().checksum(), *Clean::of(&stream).checksums.last().unwrap());
     // Provenance is for people only: it may be missing.
     let without = [&parts[..1], &parts[2..]].concat();
     let (decoder, error) = decode_all(&chunks::join(&without), Limits::default(), name);
     assert_eq!((error, decoder.is_complete()), (None, true));
     assert_eq!(decoder.info().unwrap().descriptor_code(), None);
-    for order in [&[0, 0, 1, 2][..], &[2, 0, 1], &[0, 1, 2, 2], &[0, 1, 2, 0], &[1, 2], &[0, 1]] {
+    let orders: [&[usize]; 7] =
+        [&[0, 0, 1, 2, 3], &[3, 0, 1], &[0, 1, 3, 3], &[0, 1, 3, 0], &[1, 3], &[0, 1], &[0, 2, 1, 2, 3]];
+    for order in orders {
         let mut chunks: Vec<Chunk> = order.iter().map(|&i| parts[i].clone()).collect();
-        chunks.extend_from_slice(&parts[3..]);
+        chunks.extend_from_slice(&parts[4..]);
         let (decoder, error) = decode_all(&chunks::join(&chunks), Limits::default(), name);
         assert!(matches!(error, Some(DecodeError::Malformed { .. })), "{order:?}: {error:?}");
         assert!(decoder.mesh().is_none(), "{order:?}");
@@ -361,7 +368,7 @@ fn random_payloads_are_refused_or_meshes() {
     let mut random = Random(5);
     for round in 0..1500 {
         let mut chunks = parts.clone();
-        let place = 3 + random.next() as usize % (parts.len() - 3);
+        let place = 4 + random.next() as usize % (parts.len() - 4);
         let payload = &mut chunks[place].payload;
         // All zeros and all ones are the ends of the coder's interval.
         match round % 4 {
@@ -378,7 +385,7 @@ fn hostile_headers_and_tables_are_refused_or_meshes() {
     for (name, stream) in streams() {
         let clean = Clean::of(&stream);
         let parts = chunks::split(&stream);
-        for (place, part) in parts.iter().enumerate().take(3) {
+        for (place, part) in parts.iter().enumerate().take_while(|(_, part)| !part.is_pass()) {
             for offset in 0..part.payload.len() {
                 for value in [0, 1, 2, 0x1f, 0x7f, 0x80, 0xff] {
                     let mut chunks = parts.clone();
@@ -402,7 +409,8 @@ fn hostile_headers_and_tables_are_refused_or_meshes() {
 fn counts_that_differ_from_the_payload_are_refused() {
     for (name, stream) in streams() {
         let parts = chunks::split(&stream);
-        let rows = chunks::read_table(&parts[2].payload);
+        let table = parts.iter().position(|part| part.kind == b'L').unwrap();
+        let rows = chunks::read_table(&parts[table].payload);
         for (pass, row) in rows.iter().enumerate() {
             // The precision and the faces of a base mesh are what the table says; every other count is
             // found again in the payload.
@@ -420,7 +428,7 @@ fn counts_that_differ_from_the_payload_are_refused() {
                     }
                     rows[pass].head[number] = count;
                     let mut chunks = parts.clone();
-                    chunks[2].payload = chunks::write_table(&rows);
+                    chunks[table].payload = chunks::write_table(&rows);
                     let what = format!("{name}, pass {pass}, number {number} changed by {change}");
                     let (decoder, error) = decode_all(&chunks::join(&chunks), Limits::default(), &what);
                     assert!(matches!(error, Some(DecodeError::Malformed { .. })), "{what}: {error:?}");
