@@ -9,7 +9,7 @@ use assert_cmd::Command;
 use common::*;
 use lwc::descriptors::{Descriptor, NormalWeights, PcaQuadric, Window, mean_edge_length, mean_window_size};
 use lwc::experiment::{Experiment, Noise, Settings, Step, Units};
-use lwc::{Decoder, EncodeError, EncodeOptions, Limits, Partition, PassKind, TriMesh};
+use lwc::{DecodeOptions, Decoder, EncodeError, EncodeOptions, Partition, PassKind, TriMesh};
 use nalgebra::{DMatrix, Vector3};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -53,8 +53,9 @@ fn by_encoder(mesh: &TriMesh, descriptor: Descriptor, levels: u32) -> Vec<(usize
     options.levels = Some(levels);
     options.quantization = 30;
     let stream = lwc::encode(mesh, &options).unwrap();
-    let fine = lwc::decode(&stream.bytes, lwc::DecodeOptions::new()).unwrap();
-    let mut decoder = Decoder::new(Limits::default());
+    let fine = lwc::decode(&stream.bytes, DecodeOptions::new()).unwrap();
+    // Updates name what is new, not what is shown elsewhere.
+    let mut decoder = Decoder::with_options(DecodeOptions::new().compensate(false));
     decoder.feed(&stream.bytes).unwrap();
     let mut steps = Vec::new();
     while let Some(update) = decoder.step().unwrap() {

@@ -4,7 +4,7 @@ use super::assemble::Extras;
 use crate::TriMesh;
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::Grid;
-use crate::lifting::compensation::Mover;
+use crate::passes::compensation::Mover;
 
 /// A borrowed view of the finest complete mesh: valid until the decoder takes more bytes.
 #[derive(Clone, Copy)]

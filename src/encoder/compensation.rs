@@ -2,11 +2,11 @@
 //! heights over each coarse one, and the weights that leave the least squares of them.
 
 use crate::bitstream::compensation::Compensation;
-use crate::lifting::compensation::{Bend, bend};
 use crate::mesh::Surface;
 use crate::mesh::surface::{next, turns};
 use crate::mesh::triangle::closest_shares;
 use crate::passes::GridMesh;
+use crate::passes::compensation::{Bend, bend};
 use crate::simplify::LevelRecord;
 use bitvec::vec::BitVec;
 use glam::DVec3;

@@ -2,7 +2,6 @@
 //! (`format/SPEC.md`, section 8). Basic arithmetic in a fixed order only.
 
 pub(crate) mod affine;
-pub(crate) mod compensation;
 pub(crate) mod consensus;
 pub(crate) mod filter;
 pub(crate) mod neighbourhood;

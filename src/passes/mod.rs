@@ -7,6 +7,7 @@
 
 pub(crate) mod attribute;
 pub(crate) mod base;
+pub(crate) mod compensation;
 pub(crate) mod connectivity;
 pub(crate) mod coordinates;
 pub(crate) mod exact;

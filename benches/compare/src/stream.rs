@@ -3,7 +3,7 @@
 use crate::model::Model;
 use crate::variant::Variant;
 use anyhow::ensure;
-use lwc::{DecodeOptions, Decoder, Limits};
+use lwc::{DecodeOptions, Decoder};
 use std::time::Instant;
 
 /// Shares of the budget at which a stream is cut.
@@ -50,7 +50,7 @@ pub fn measure(
     let (mut at_shares, mut curve) = (Vec::new(), Vec::new());
     if let Some(budget) = budget {
         let quality = |count: usize| {
-            early(&bytes, count)?
+            early(&bytes, count, variant.compensates())?
                 .and_then(|mesh| model.quality(&mesh))
                 .map_or(Ok(None), |db| anyhow::Ok(Some(db)))
         };
@@ -81,8 +81,8 @@ pub fn fastest(runs: u32, mut work: impl FnMut() -> anyhow::Result<()>) -> anyho
 }
 
 /// What the first `count` bytes show.
-fn early(bytes: &[u8], count: usize) -> anyhow::Result<Option<lwc::TriMesh>> {
-    let mut decoder = Decoder::new(Limits::default());
+fn early(bytes: &[u8], count: usize, compensate: bool) -> anyhow::Result<Option<lwc::TriMesh>> {
+    let mut decoder = Decoder::with_options(DecodeOptions::new().compensate(compensate));
     decoder.feed(&bytes[..count.min(bytes.len())])?;
     while decoder.step()?.is_some() {}
     Ok(decoder.preview())

@@ -14,14 +14,23 @@ pub struct Variant {
     descriptor: Option<Descriptor>,
     /// Not in one piece, though that be smaller.
     keeps_levels: bool,
+    /// Vertices of coarse meshes are shown where they lie.
+    is_lazy: bool,
 }
 
 /// The smallest streams that have beginnings.
 const LEVELS: &str = "levels";
+/// The usual streams, beginnings as they are without compensation.
+const LAZY: &str = "lazy";
 /// More than any mesh has.
 const ALL_LEVELS: u32 = 128;
 
 impl Variant {
+    /// Whether beginnings are shown where they shrink less.
+    pub fn compensates(self) -> bool {
+        !self.is_lazy
+    }
+
     pub fn options(self, bits: u32) -> EncodeOptions {
         let mut options = EncodeOptions::default();
         options.quantization = bits;
@@ -44,6 +53,7 @@ impl fmt::Display for Variant {
         f.write_str(match self.profile {
             Profile::Fast => self.profile.name(),
             _ if self.keeps_levels => LEVELS,
+            _ if self.is_lazy => LAZY,
             _ => name,
         })?;
         self.descriptor.map_or(Ok(()), |descriptor| write!(f, ":{}", descriptor.name()))
@@ -60,19 +70,23 @@ impl FromStr for Variant {
             }
             None => (text, None),
         };
-        let usual = Self { aim: None, profile: Profile::default(), descriptor, keeps_levels: false };
+        let (profile, aim_of_most) = (Profile::default(), Some(Optimize::default()));
+        let usual = Self { aim: None, profile, descriptor, keeps_levels: false, is_lazy: false };
         if aim == Partition::Algorithm1.name() {
             return Ok(usual);
         }
         if aim == Profile::Fast.name() {
-            return Ok(Self { aim: Some(Optimize::default()), profile: Profile::Fast, ..usual });
+            return Ok(Self { aim: aim_of_most, profile: Profile::Fast, ..usual });
+        }
+        if aim == LAZY {
+            return Ok(Self { aim: aim_of_most, is_lazy: true, ..usual });
         }
         if aim == LEVELS {
             return Ok(Self { aim: Some(Optimize::Size), keeps_levels: true, ..usual });
         }
         let found = Optimize::ALL.into_iter().find(|known| known.name() == aim);
-        found
-            .map(|aim| Self { aim: Some(aim), ..usual })
-            .ok_or_else(|| format!("`{aim}` is neither size, levels, balanced, prefix, fast nor algorithm1"))
+        found.map(|aim| Self { aim: Some(aim), ..usual }).ok_or_else(|| {
+            format!("`{aim}` is neither size, levels, balanced, lazy, prefix, fast nor algorithm1")
+        })
     }
 }

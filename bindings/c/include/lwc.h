@@ -160,6 +160,8 @@ typedef struct LwcDecodeOptions {
   uint32_t max_vertices;
   // Most levels.
   uint32_t max_levels;
+  // Leave the vertices of coarse levels where they are in the finest mesh.
+  bool uncompensated;
 } LwcDecodeOptions;
 
 // A pass, and the mesh that stands after it.

@@ -17,6 +17,8 @@ pub struct DecodeOptions {
     pub max_vertices: u32,
     /// Most levels.
     pub max_levels: u32,
+    /// Leave the vertices of coarse levels where they are in the finest mesh.
+    pub uncompensated: bool,
 }
 
 /// How to encode. See `EncodeOptions` of the Rust library for what the numbers mean.
@@ -67,7 +69,7 @@ pub struct EncodeOptions {
 #[unsafe(no_mangle)]
 pub extern "C" fn lwc_decode_options_default() -> DecodeOptions {
     let Limits { max_memory, max_vertices, max_levels } = Limits::default();
-    DecodeOptions { level: -1, max_memory, max_vertices, max_levels }
+    DecodeOptions { level: -1, max_memory, max_vertices, max_levels, uncompensated: false }
 }
 
 /// The defaults of the Rust library.
@@ -98,11 +100,12 @@ pub extern "C" fn lwc_encode_options_default() -> EncodeOptions {
 }
 
 pub fn decode(options: Option<&DecodeOptions>) -> lwc::DecodeOptions {
-    let Some(&DecodeOptions { level, max_memory, max_vertices, max_levels }) = options else {
+    let Some(&DecodeOptions { level, max_memory, max_vertices, max_levels, uncompensated }) = options else {
         return lwc::DecodeOptions::new();
     };
-    let limits = lwc::DecodeOptions::new().limits(Limits { max_memory, max_vertices, max_levels });
-    u32::try_from(level).map_or(limits, |level| limits.level(level))
+    let limits = Limits { max_memory, max_vertices, max_levels };
+    let options = lwc::DecodeOptions::new().limits(limits).compensate(!uncompensated);
+    u32::try_from(level).map_or(options, |level| options.level(level))
 }
 
 pub fn encode(from: &EncodeOptions) -> Result<lwc::EncodeOptions, Status> {

@@ -74,28 +74,30 @@ fn tri_mesh<'py>(
 
 /// Decodes a stream, or the beginning of one. Returns a lwc.Mesh.
 #[pyfunction]
-#[pyo3(signature = (stream, *, level=None, max_memory=None, max_vertices=None))]
+#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None))]
 fn decode<'py>(
     py: Python<'py>,
     stream: &[u8],
     level: Option<u32>,
+    compensate: bool,
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    attributes::mesh(py, decoded(py, stream, options::decode(level, max_memory, max_vertices))?)
+    attributes::mesh(py, decoded(py, stream, options::decode(level, compensate, max_memory, max_vertices))?)
 }
 
 /// Decodes a stream, or the beginning of one, as a lwc.Scene: a mesh alone is a scene of one instance.
 #[pyfunction]
-#[pyo3(signature = (stream, *, level=None, max_memory=None, max_vertices=None))]
+#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None))]
 fn decode_scene<'py>(
     py: Python<'py>,
     stream: &[u8],
     level: Option<u32>,
+    compensate: bool,
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    scene::scene(py, decoded(py, stream, options::decode(level, max_memory, max_vertices))?)
+    scene::scene(py, decoded(py, stream, options::decode(level, compensate, max_memory, max_vertices))?)
 }
 
 fn decoded(py: Python<'_>, stream: &[u8], options: lwc::DecodeOptions) -> PyResult<(TriMesh, Attributes)> {
@@ -207,9 +209,9 @@ struct Decoder(lwc::Decoder);
 #[pymethods]
 impl Decoder {
     #[new]
-    #[pyo3(signature = (*, level=None, max_memory=None, max_vertices=None))]
-    fn new(level: Option<u32>, max_memory: Option<u64>, max_vertices: Option<u32>) -> Self {
-        Self(lwc::Decoder::with_options(options::decode(level, max_memory, max_vertices)))
+    #[pyo3(signature = (*, level=None, compensate=true, max_memory=None, max_vertices=None))]
+    fn new(level: Option<u32>, compensate: bool, max_memory: Option<u64>, max_vertices: Option<u32>) -> Self {
+        Self(lwc::Decoder::with_options(options::decode(level, compensate, max_memory, max_vertices)))
     }
 
     /// Takes the next bytes, however they are cut, and applies every pass that is complete.

@@ -55,9 +55,14 @@ fn find<T: Copy>(
     all.iter().copied().find(|&one| name_of(one) == name).ok_or_else(|| option_error(py, option, name))
 }
 
-pub fn decode(level: Option<u32>, max_memory: Option<u64>, max_vertices: Option<u32>) -> DecodeOptions {
+pub fn decode(
+    level: Option<u32>,
+    compensate: bool,
+    max_memory: Option<u64>,
+    max_vertices: Option<u32>,
+) -> DecodeOptions {
     let default = Limits::default();
-    let options = DecodeOptions::new().limits(Limits {
+    let options = DecodeOptions::new().compensate(compensate).limits(Limits {
         max_memory: max_memory.unwrap_or(default.max_memory),
         max_vertices: max_vertices.unwrap_or(default.max_vertices),
         ..default

@@ -74,6 +74,9 @@ def test_levels_and_prefixes_are_coarser_meshes():
     level = 3
     vertices, faces = lwc.decode(stream, level=level)
     assert len(vertices) == max(p["vertices"] for p in passes if p["level"] == level)
+    lazy, _ = lwc.decode(stream, level=level, compensate=False)
+    assert lazy.shape == vertices.shape and not np.array_equal(lazy, vertices)
+    assert np.array_equal(lwc.decode(stream, compensate=False).vertices, lwc.decode(stream).vertices)
     early, _ = lwc.decode(stream[: len(stream) // 3])
     assert 0 < len(early) < len(torus()[0])
 

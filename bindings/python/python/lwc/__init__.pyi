@@ -73,6 +73,7 @@ def decode(
     stream: bytes,
     *,
     level: int | None = None,
+    compensate: bool = True,
     max_memory: int | None = None,
     max_vertices: int | None = None,
 ) -> Mesh: ...
@@ -80,6 +81,7 @@ def decode_scene(
     stream: bytes,
     *,
     level: int | None = None,
+    compensate: bool = True,
     max_memory: int | None = None,
     max_vertices: int | None = None,
 ) -> Scene: ...
@@ -98,7 +100,12 @@ class Update:
 
 class Decoder:
     def __init__(
-        self, *, level: int | None = None, max_memory: int | None = None, max_vertices: int | None = None
+        self,
+        *,
+        level: int | None = None,
+        compensate: bool = True,
+        max_memory: int | None = None,
+        max_vertices: int | None = None,
     ) -> None: ...
     def push(self, piece: bytes) -> list[Update]: ...
     def mesh(self, *, attributes: bool = True) -> Mesh | None: ...
