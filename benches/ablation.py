@@ -4,7 +4,7 @@
     benches/ablation.py [--only TEXT] MESH... > table.md
 
 MESH: .obj, .ply or .stl, also as .zst. Every variant is a copy of the sources in which some words are
-replaced (below), built in target/ablation, and checked with --verify: it is a codec of its own. Sizes are
+replaced (below), built in target/ablation, and checked: it is a codec of its own. Sizes are
 the mean over the meshes of the change in per cent, with `--optimize size --levels 99` and with the default; dB the
 mean change of the default's prefixes at 5, 10, 20 and 50 % of its whole file as it is. A part that is
 off makes files larger and prefixes worse by so much.
@@ -101,32 +101,22 @@ def build(edits, folder):
             raise SystemExit(f"{file} has no `{words}` any more")
         path.write_text(text)
     fast = ["--config", "profile.release.lto=false", "--config", "profile.release.codegen-units=16"]
-    command = ["cargo", "build", "--release", "--quiet", "--bin", "lwc", "--target-dir", TARGET, *fast]
+    features = ["--no-default-features", "--features", "encoder,io,metrics"]
+    command = ["cargo", "build", "--release", "--quiet", "--example", "measure", "--target-dir", TARGET, *features, *fast]
     subprocess.run(command, cwd=folder, check=True)
     program = folder / "program"
-    shutil.copy(TARGET / "release" / "lwc", program)
+    shutil.copy(TARGET / "release" / "examples" / "measure", program)
     return program
 
 
-def encode(program, mesh, aim, out):
-    command = [program, "encode", mesh, "--optimize", aim, "--levels", "99" if aim == "size" else "auto"]
-    subprocess.run([*command, "-o", out, "--verify", "--quiet"], check=True)
-    return out.stat().st_size
-
-
-def measure(program, meshes, budgets, folder):
+def measure(program, meshes, budgets):
     """Per mesh: bytes for size, bytes by default, dB at the shares of the budget or of the own bytes."""
     figures = []
     for i, mesh in enumerate(meshes):
-        out, early = folder / "m.lwc", folder / "early.lwc"
-        size = encode(program, mesh, "size", out)
-        usual = encode(program, mesh, "balanced", out)
-        stream, quality = out.read_bytes(), []
-        for share in SHARES:
-            early.write_bytes(stream[: int(share * (budgets[i] if budgets else usual))])
-            done = subprocess.run([program, "compare", mesh, early, "--json"], capture_output=True, text=True)
-            quality.append(json.loads(done.stdout)["db"] if done.returncode == 0 else math.nan)
-        figures.append((size, usual, quality))
+        budget = [str(budgets[i])] if budgets else []
+        done = subprocess.run([program, mesh, *budget], check=True, capture_output=True, text=True)
+        found = json.loads(done.stdout)
+        figures.append((found["size"], found["usual"], found["db"]))
     return figures
 
 
@@ -151,7 +141,7 @@ def main():
         with tempfile.TemporaryDirectory() as temporary:
             folder = pathlib.Path(temporary)
             program = build(edits, folder)
-            figures = measure(program, meshes, [row[1] for row in base] if base else None, folder)
+            figures = measure(program, meshes, [row[1] for row in base] if base else None)
         if base is None:
             base = figures
             continue
