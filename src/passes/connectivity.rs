@@ -8,7 +8,7 @@ use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::bitstream::mixer::{MixedBit, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::streams::stream;
-use crate::bitstream::tables::Tables;
+use crate::bitstream::tables::{Tables, index_below};
 use crate::lanes::Lanes;
 use crate::mesh::Surface;
 use crate::mesh::ears::{MAX_VALENCE, squared_distance};
@@ -351,8 +351,7 @@ impl<'a> Walk<'a> {
         }
         let (contexts, set) = self.face_contexts(corner, is_seed);
         let tables = Tables::get();
-        let is_in_patch =
-            self.models.in_patch.code(coder, tables, contexts, &[], set, wanted != NOT_IN_PATCH);
+        let is_in_patch = self.models.in_patch.code(coder, tables, contexts, [], set, wanted != NOT_IN_PATCH);
         self.polygon = Polygon::of_triangle(&start, usize::from(!is_seed));
         self.fit = Fit::Is;
         self.settle(coder, corner, is_seed, wanted, is_in_patch)
@@ -458,7 +457,7 @@ impl<'a> Walk<'a> {
         let beyond = self.surface.across(inside);
         let (contexts, set) = self.growth_contexts(inside, beyond, fit, fit_of(after));
         let grows = self.target.is_some_and(|t| t.patch_of_face[(beyond / 3) as usize] == wanted);
-        let grows = self.models.grow.code(coder, Tables::get(), contexts, &[], set, grows);
+        let grows = self.models.grow.code(coder, Tables::get(), contexts, [], set, grows);
         if grows {
             (self.polygon, self.fit) = (self.grown_polygon(beyond), fit);
             self.growths = [None; 2];
@@ -589,7 +588,7 @@ fn bucket(value: i32, first: i32) -> usize {
 /// x / (x + y) in `levels` equal steps; the middle if both vanish.
 fn share(x: f32, y: f32, levels: usize) -> usize {
     let sum = x + y;
-    if sum > 0.0 { ((x / sum * levels as f32) as usize).min(levels - 1) } else { levels / 2 }
+    if sum > 0.0 { index_below(x / sum * levels as f32, levels) } else { levels / 2 }
 }
 
 /// Cosine of the angle at `tip` over the edge a–b, 0 if a side vanishes.
@@ -601,5 +600,5 @@ fn cosine(tip: [i32; 3], a: [i32; 3], b: [i32; 3]) -> f32 {
 
 /// A cosine in `count` equal steps, the sharpest angle first.
 fn steps(cosine: f32, count: usize) -> usize {
-    ((1.0 - cosine) * 0.5 * count as f32).clamp(0.0, (count - 1) as f32) as usize
+    index_below((1.0 - cosine) * 0.5 * count as f32, count)
 }
