@@ -103,7 +103,7 @@ impl<const C: usize> MixedBit<C> {
     }
 
     /// Codes one bit and learns it. `contexts[i] < sizes[i]`; `direct` are log-odds of a one.
-    #[inline]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub(crate) fn code<B: BitCoder, const D: usize>(
         &mut self,
         coder: &mut B,
