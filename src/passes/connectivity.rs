@@ -359,17 +359,17 @@ impl<'a> Walk<'a> {
         }
         let ends = [next(corner), prev(corner), corner].map(|c| self.at(c));
         let start = Triangle { cells: ends.map(|v| v.cell), valences: ends.map(|v| v.live) };
-        self.growths = [Growth::NONE; 2];
+        let mut growths = [Growth::NONE; 2];
         if !is_seed {
-            self.growths =
-                [self.first_growth(&start, next(corner), 1), self.first_growth(&start, prev(corner), 2)];
+            growths = [self.first_growth(&start, next(corner), 1), self.first_growth(&start, prev(corner), 2)];
         }
-        let (contexts, set) = self.face_contexts(corner, is_seed);
+        let (contexts, set) = self.face_contexts(corner, is_seed, ends, growths.map(|growth| growth.fit));
         let is_wanted = wanted != NOT_IN_PATCH;
         let is_in_patch = self.models.in_patch.code(coder, Tables::get(), contexts, [], set, is_wanted);
         if is_in_patch {
             self.polygon.begin(&start, usize::from(!is_seed));
             self.fit = Fit::Is;
+            self.growths = growths;
         }
         self.settle(coder, corner, is_seed, wanted, is_in_patch)
     }
@@ -429,12 +429,11 @@ impl<'a> Walk<'a> {
     }
 
     /// What growing over edge `edge` of the first triangle would make of a patch.
+    #[inline(always)]
     fn first_growth(&self, start: &Triangle, inside: u32, edge: usize) -> Growth {
-        let fit = self.undecided_across(inside).map_or(Fit::Unknown, |beyond| {
-            let tip = self.at(beyond);
-            start.fit_grown(edge, tip.cell, tip.live)
-        });
-        Growth { inside, fit }
+        let Some(beyond) = self.undecided_across(inside) else { return Growth::NONE };
+        let tip = self.at(beyond);
+        Growth { inside, fit: start.fit_grown(edge, tip.cell, tip.live) }
     }
 
     /// What is known of growing over the edge that `inside` faces.
@@ -529,8 +528,13 @@ impl<'a> Walk<'a> {
     }
 
     #[inline(always)]
-    fn face_contexts(&self, corner: u32, is_seed: bool) -> ([usize; 6], usize) {
-        let ends = [next(corner), prev(corner), corner].map(|c| self.at(c));
+    fn face_contexts(
+        &self,
+        corner: u32,
+        is_seed: bool,
+        ends: [&Around; 3],
+        [first, second]: [Fit; 2],
+    ) -> ([usize; 6], usize) {
         let source = if is_seed { 2 } else { self.state_across(corner).saturating_sub(1).min(1) };
         let around = self.state_across(next(corner)) * 4 + self.state_across(prev(corner));
         let urgency = ends.map(Around::urgency);
@@ -550,7 +554,6 @@ impl<'a> Walk<'a> {
             let cosine = Angle::new(outside, a, b).cosine();
             (share(outside.squared_distance(tip), gate * 3.0, 8), steps(cosine, 8))
         };
-        let [first, second] = self.growths.map(|growth| growth.fit);
         let prospects = first as usize * FITS + second as usize;
         let contexts = [
             (prospects * 4 + urgency[2]) * 3 + source,
