@@ -210,6 +210,9 @@ impl PausedWalk {
 
 struct Walk<'a> {
     surface: &'a Surface,
+    /// At each corner, and the corner across from each: as the surface has them, at hand.
+    vertices: &'a [u32],
+    opposite: &'a [u32],
     models: &'a mut ConnectivityModels,
     target: Option<&'a ConnectivityTarget>,
     count: usize,
@@ -244,6 +247,8 @@ impl<'a> Walk<'a> {
         let frontier = Vec::new();
         Self {
             surface,
+            vertices: surface.triangles.as_flattened(),
+            opposite: &surface.opposite,
             models,
             target,
             count,
@@ -273,7 +278,7 @@ impl<'a> Walk<'a> {
 
     /// Vertices of valence two that hang on a boundary edge, in the order of the corners.
     fn code_ears<B: BitCoder>(&mut self, coder: &mut B, work: &mut Work) -> Result<bool, Malformed> {
-        let end = self.surface.opposite.len() as u32;
+        let end = self.opposite.len() as u32;
         while self.next_corner < end {
             let corner = self.next_corner;
             // Corners that face no boundary cost next to nothing.
@@ -281,7 +286,7 @@ impl<'a> Walk<'a> {
                 if !work.take(1) {
                     return Ok(false);
                 }
-                let block = &self.surface.opposite[corner as usize..];
+                let block = &self.opposite[corner as usize..];
                 let block = &block[..block.len().min(64)];
                 if !has_boundary(block) {
                     self.next_corner += block.len() as u32;
@@ -289,10 +294,10 @@ impl<'a> Walk<'a> {
                 }
             }
             self.next_corner += 1;
-            if self.surface.across(corner) != NO_CORNER {
+            if self.across(corner) != NO_CORNER {
                 continue;
             }
-            let ends = [next(corner), prev(corner)].map(|c| self.surface.vertex(c) as usize);
+            let ends = [next(corner), prev(corner)].map(|c| self.vertex(c) as usize);
             let context = ends.iter().filter(|&&v| self.around[v].touched > 0).count();
             let wanted = self.target.is_some_and(|t| t.ear_at.contains_key(&corner));
             if self.models.ear.code(coder, context, wanted) {
@@ -318,7 +323,7 @@ impl<'a> Walk<'a> {
                 if coder.is_exhausted() || coder.is_guessing() {
                     return Err(Malformed(EXHAUSTED));
                 }
-                let beyond = self.surface.across(gate);
+                let beyond = self.across(gate);
                 if beyond != NO_CORNER && self.faces[(beyond / 3) as usize] == Face::Undecided {
                     self.decide(coder, beyond, false)?;
                 }
@@ -339,13 +344,13 @@ impl<'a> Walk<'a> {
     /// Where the walk of a component starts whose first vertex is at `corner`: at the edge to the
     /// vertex after it, if that is there.
     fn seed_at(&self, corner: u32) -> u32 {
-        let second = self.surface.vertex(corner) + 1;
+        let second = self.vertex(corner) + 1;
         let there = |c: u32| (c != NO_CORNER).then_some(c);
         let lefts = std::iter::successors(Some(corner), |&c| there(self.surface.swing_left(c)));
         let rights = std::iter::successors(Some(corner), |&c| there(self.surface.swing_right(c)));
         let turn = |(i, c): (usize, u32)| (i == 0 || c != corner).then_some(c);
         let mut around = lefts.enumerate().map_while(turn).chain(rights.enumerate().map_while(turn));
-        prev(around.find(|&c| self.surface.vertex(next(c)) == second).unwrap_or(corner))
+        prev(around.find(|&c| self.vertex(next(c)) == second).unwrap_or(corner))
     }
 
     /// Codes whether the face of `corner` is in a patch, and the patch if so. `corner` faces the
@@ -361,7 +366,8 @@ impl<'a> Walk<'a> {
         let start = Triangle { cells: ends.map(|v| v.cell), valences: ends.map(|v| v.live) };
         let mut growths = [Growth::NONE; 2];
         if !is_seed {
-            growths = [self.first_growth(&start, next(corner), 1), self.first_growth(&start, prev(corner), 2)];
+            growths =
+                [self.first_growth(&start, next(corner), 1), self.first_growth(&start, prev(corner), 2)];
         }
         let (contexts, set) = self.face_contexts(corner, is_seed, ends, growths.map(|growth| growth.fit));
         let is_wanted = wanted != NOT_IN_PATCH;
@@ -386,7 +392,7 @@ impl<'a> Walk<'a> {
     ) -> Result<(), Malformed> {
         let face = corner / 3;
         if !is_in_patch {
-            self.mark(face, Face::Kept);
+            self.keep(face);
             self.gates.push_back(next(corner));
             self.gates.push_back(prev(corner));
             if is_seed {
@@ -404,7 +410,7 @@ impl<'a> Walk<'a> {
         }
         while let Some(inside) = self.frontier.pop() {
             if self.code_growth(coder, inside, wanted) {
-                let entered = self.surface.across(inside);
+                let entered = self.across(inside);
                 self.take(entered / 3);
                 self.frontier.extend([prev(entered), next(entered)]);
             } else {
@@ -415,15 +421,25 @@ impl<'a> Walk<'a> {
         self.finish_patch(coder, wanted)
     }
 
+    #[inline(always)]
+    fn vertex(&self, corner: u32) -> u32 {
+        self.vertices[corner as usize]
+    }
+
+    #[inline(always)]
+    fn across(&self, corner: u32) -> u32 {
+        self.opposite[corner as usize]
+    }
+
     /// What is known at the vertex of a corner.
     #[inline(always)]
     fn at(&self, corner: u32) -> &Around {
-        &self.around[self.surface.vertex(corner) as usize]
+        &self.around[self.vertex(corner) as usize]
     }
 
     /// The corner beyond the edge that `inside` faces, if a patch can grow over it.
     fn undecided_across(&self, inside: u32) -> Option<u32> {
-        let beyond = self.surface.across(inside);
+        let beyond = self.across(inside);
         let is_open = beyond != NO_CORNER && self.faces[(beyond / 3) as usize] == Face::Undecided;
         is_open.then_some(beyond)
     }
@@ -442,17 +458,21 @@ impl<'a> Walk<'a> {
         self.growths.iter().find(|growth| growth.inside == inside).map(|growth| growth.fit)
     }
 
-    fn mark(&mut self, face: u32, state: Face) {
-        self.faces[face as usize] = state;
+    fn keep(&mut self, face: u32) {
+        self.faces[face as usize] = Face::Kept;
         for v in self.surface.triangles[face as usize] {
             self.around[v as usize].undecided -= 1;
         }
     }
 
     fn take(&mut self, face: u32) {
-        self.mark(face, Face::InPatch);
+        self.faces[face as usize] = Face::InPatch;
         self.patches.push_face(face);
-        self.surface.triangles[face as usize].iter().for_each(|&v| self.around[v as usize].gain(-1));
+        for v in self.surface.triangles[face as usize] {
+            let around = &mut self.around[v as usize];
+            around.undecided -= 1;
+            around.gain(-1);
+        }
     }
 
     /// Codes whether the patch goes on across the edge that `inside` faces.
@@ -482,7 +502,7 @@ impl<'a> Walk<'a> {
         let mut open_edge = CLOSED;
         let (edges, _) = self.patches.unfinished();
         for (i, &corner) in edges.iter().enumerate() {
-            if self.surface.across(corner) == NO_CORNER && !self.patches.has_ear(corner) {
+            if self.across(corner) == NO_CORNER && !self.patches.has_ear(corner) {
                 let opens = self.target.is_some_and(|t| t.patch_open_at.get(&corner) == Some(&wanted));
                 if self.models.open.code(coder, 0, opens) {
                     open_edge = i as u32;
@@ -493,7 +513,7 @@ impl<'a> Walk<'a> {
         let degree = edges.len();
         for (i, &corner) in edges.iter().enumerate() {
             self.gates.push_back(corner);
-            let v = self.surface.vertex(next(corner)) as usize;
+            let v = self.vertex(next(corner)) as usize;
             let is_end =
                 open_edge != CLOSED && (i as u32 == open_edge || i == (open_edge as usize + 1) % degree);
             self.around[v].touch(if is_end { 1 } else { 2 });
@@ -505,7 +525,7 @@ impl<'a> Walk<'a> {
     /// Which stream says whether a face is in a patch.
     #[inline]
     fn face_stream(&self, corner: u32, is_seed: bool) -> usize {
-        let tip = self.around[self.surface.vertex(corner) as usize];
+        let tip = self.around[self.vertex(corner) as usize];
         let is_beside_patch = !is_seed && self.state_across(corner) == Face::InPatch as usize;
         let live = tip.live.saturating_sub(3).min(4) as usize;
         stream::IN_PATCH + (live * 2 + usize::from(tip.touched > 0)) * 2 + usize::from(is_beside_patch)
@@ -515,13 +535,13 @@ impl<'a> Walk<'a> {
     #[inline]
     fn growth_stream(&self, beyond: u32) -> usize {
         let (_, faces) = self.patches.unfinished();
-        let far = self.around[self.surface.vertex(beyond) as usize];
+        let far = self.around[self.vertex(beyond) as usize];
         let live = far.live.saturating_sub(4).min(2) as usize;
         stream::GROW + (faces.len().min(4) - 1) * 6 + live * 2 + usize::from(far.touched > 0)
     }
 
     fn state_across(&self, corner: u32) -> usize {
-        match self.surface.across(corner) {
+        match self.across(corner) {
             NO_CORNER => 3,
             o => self.faces[(o / 3) as usize] as usize,
         }
@@ -546,7 +566,7 @@ impl<'a> Walk<'a> {
         let gate = a.squared_distance(b);
         let angle = Angle::new(tip, a, b);
         let shape = share(gate * 2.0, angle.squares[1] + angle.squares[0], 8);
-        let beyond = self.surface.across(corner);
+        let beyond = self.across(corner);
         let (fold, angle_beyond) = if beyond == NO_CORNER {
             (7, 4)
         } else {
