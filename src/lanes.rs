@@ -78,6 +78,31 @@ impl Lanes {
     }
 }
 
+/// A grid cell, as wide as [`Lanes`] are.
+#[derive(Clone, Copy, Default)]
+#[repr(align(16))]
+pub(crate) struct Cell([i32; 4]);
+
+impl Cell {
+    #[inline(always)]
+    pub(crate) fn new([x, y, z]: [i32; 3]) -> Self {
+        Self([x, y, z, 0])
+    }
+
+    /// The way to `other`.
+    #[inline(always)]
+    pub(crate) fn to(self, other: Self) -> Lanes {
+        Lanes(std::array::from_fn(|i| other.0[i].wrapping_sub(self.0[i]) as f32))
+    }
+
+    /// How far `other` is, squared.
+    #[inline(always)]
+    pub(crate) fn squared_distance(self, other: Self) -> f32 {
+        let way = self.to(other);
+        way.dot3(way)
+    }
+}
+
 impl Add for Lanes {
     type Output = Self;
     #[inline(always)]

@@ -3,9 +3,11 @@
 
 use super::range_coder::BitCoder;
 use super::tables::Tables;
+use crate::lanes::Lanes;
+use std::hint::black_box;
 
 /// Inputs of every mixer: contexts, direct inputs and the bias together. Two SIMD vectors.
-pub(crate) const LANES: usize = 8;
+const LANES: usize = 8;
 
 /// Weight a context starts with.
 const INITIAL_WEIGHT: f32 = 0.35;
@@ -19,7 +21,8 @@ const RATE_DECAY: f32 = 256.0;
 pub(crate) struct Counter(u32);
 
 impl Counter {
-    const AGE_MASK: u32 = 0x3ff;
+    const AGE_BITS: u32 = 10;
+    const AGE_MASK: u32 = (1 << Self::AGE_BITS) - 1;
 
     pub(crate) const fn new() -> Self {
         Self(1 << 31)
@@ -32,17 +35,14 @@ impl Counter {
     }
 
     /// Moves towards `bit` by 1/(age + 1.5), the age growing up to `limit`.
-    #[inline]
-    fn update(&mut self, bit: bool, limit: u32, reciprocal: &[u32; 1024]) {
+    #[inline(always)]
+    fn update(&mut self, bit: bool, limit: u32) {
         let age = self.0 & Self::AGE_MASK;
-        let p = self.0 >> 10;
-        let r = u64::from(reciprocal[age as usize]);
-        let p = if bit {
-            p + ((u64::from((1 << 22) - 1 - p) * r) >> 16) as u32
-        } else {
-            p - ((u64::from(p) * r) >> 16) as u32
-        };
-        self.0 = p << 10 | (age + 1).min(limit);
+        // Upside down for a one, so that both bits go the same way.
+        let flip = if bit { u32::MAX >> Self::AGE_BITS } else { 0 };
+        let p = (self.0 >> Self::AGE_BITS) ^ flip;
+        let p = p - ((u64::from(p) * u64::from(RECIPROCALS[age as usize])) >> 16) as u32;
+        self.0 = (p ^ flip) << Self::AGE_BITS | (age + u32::from(age < limit));
     }
 }
 
@@ -66,9 +66,16 @@ pub(crate) struct MixedBit<const C: usize> {
     counters: Vec<Counter>,
     starts: [usize; C],
     sizes: [usize; C],
-    weights: Vec<[f32; LANES]>,
-    seen: Vec<u32>,
+    sets: Vec<WeightSet>,
     limit: u32,
+}
+
+/// The weights of all inputs.
+#[derive(Clone, Copy)]
+struct WeightSet {
+    weights: [Lanes; 2],
+    /// Bits it has seen.
+    seen: u32,
 }
 
 impl<const C: usize> MixedBit<C> {
@@ -81,29 +88,28 @@ impl<const C: usize> MixedBit<C> {
             *start = total;
             total += size;
         }
-        let weights = std::array::from_fn(|i| match i {
+        let weights = lanes(std::array::from_fn(|i| match i {
             0 => 0.0,
             i if i <= C => INITIAL_WEIGHT,
             _ => direct,
-        });
+        }));
         Self {
             counters: vec![Counter::new(); total],
             starts,
             sizes,
-            weights: vec![weights; sets],
-            seen: vec![0; sets],
+            sets: vec![WeightSet { weights, seen: 0 }; sets],
             limit,
         }
     }
 
     /// Codes one bit and learns it. `contexts[i] < sizes[i]`; `direct` are log-odds of a one.
-    #[inline]
-    pub(crate) fn code<B: BitCoder>(
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    pub(crate) fn code<B: BitCoder, const D: usize>(
         &mut self,
         coder: &mut B,
         tables: &Tables,
         contexts: [usize; C],
-        direct: &[f32],
+        direct: [f32; D],
         set: usize,
         bit: bool,
     ) -> bool {
@@ -115,28 +121,31 @@ impl<const C: usize> MixedBit<C> {
             slots[i] = self.starts[i] + contexts[i];
             inputs[1 + i] = tables.stretch(self.counters[slots[i]].p12());
         }
-        inputs[1 + C..1 + C + direct.len()].copy_from_slice(direct);
+        inputs[1 + C..1 + C + D].copy_from_slice(&direct);
+        let inputs = lanes(inputs);
 
-        let weights = &mut self.weights[set];
-        let product: [f32; LANES] = std::array::from_fn(|i| weights[i] * inputs[i]);
-        let half: [f32; 4] = std::array::from_fn(|i| product[i] + product[i + 4]);
-        let p1 = tables.squash((half[0] + half[2]) + (half[1] + half[3]));
+        let WeightSet { weights, seen } = &mut self.sets[set];
+        // Through memory: compilers would take all products apart, as only sums of their lanes are wanted.
+        let half = black_box(weights[0] * inputs[0] + weights[1] * inputs[1]);
+        let p1 = tables.squash((half.0[0] + half.0[2]) + (half.0[1] + half.0[3]));
 
         let bit = coder.code(bit, p1);
 
-        let seen = &mut self.seen[set];
         let rate = RATE_SLOW + RATE_FAST / (1.0 + *seen as f32 * (1.0 / RATE_DECAY));
         *seen = seen.saturating_add(1);
         let target = if bit { 1.0 } else { 0.0 };
         let step = (target - p1 as f32 * (1.0 / 65_536.0)) * rate;
-        for (weight, input) in weights.iter_mut().zip(inputs) {
-            *weight += step * input;
-        }
+        weights[0] += inputs[0] * step;
+        weights[1] += inputs[1] * step;
         for slot in slots {
-            self.counters[slot].update(bit, self.limit, &RECIPROCALS);
+            self.counters[slot].update(bit, self.limit);
         }
         bit
     }
+}
+
+fn lanes([a, b, c, d, e, f, g, h]: [f32; LANES]) -> [Lanes; 2] {
+    [Lanes([a, b, c, d]), Lanes([e, f, g, h])]
 }
 
 /// Adaptive bits of one context each, for syntax that is too rare to deserve a mixer.
@@ -156,7 +165,7 @@ impl PlainBits {
     pub(crate) fn code<B: BitCoder>(&mut self, coder: &mut B, context: usize, bit: bool) -> bool {
         let counter = &mut self.counters[context];
         let bit = coder.code(bit, (counter.0 >> 16).clamp(64, 65_536 - 64));
-        counter.update(bit, Self::LIMIT, &RECIPROCALS);
+        counter.update(bit, Self::LIMIT);
         bit
     }
 }
@@ -172,7 +181,7 @@ mod tests {
         let run = |coder: &mut RangeEncoder| {
             let mut model = MixedBit::new([7, 3], 1, 0.5, 255);
             for i in 0..20_000 {
-                model.code(coder, Tables::get(), [i % 7, i % 3], &[0.1], 0, bit_of(i));
+                model.code(coder, Tables::get(), [i % 7, i % 3], [0.1], 0, bit_of(i));
             }
         };
         let mut encoder = RangeEncoder::new();
@@ -182,7 +191,7 @@ mod tests {
         let mut decoder = RangeDecoder::new(&bytes);
         let mut model = MixedBit::new([7, 3], 1, 0.5, 255);
         for i in 0..20_000 {
-            assert_eq!(model.code(&mut decoder, Tables::get(), [i % 7, i % 3], &[0.1], 0, false), bit_of(i));
+            assert_eq!(model.code(&mut decoder, Tables::get(), [i % 7, i % 3], [0.1], 0, false), bit_of(i));
         }
     }
 }

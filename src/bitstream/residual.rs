@@ -6,7 +6,7 @@
 use super::mixer::MixedBit;
 use super::mixture::Mixture;
 use super::range_coder::{BitCoder, PROBABILITY_ONE};
-use super::tables::Tables;
+use super::tables::{Tables, index_below};
 
 /// Values of each context that the caller gives.
 pub(crate) const CALLER_CONTEXTS: usize = 256;
@@ -95,8 +95,8 @@ impl ResidualModel {
 
         let mixture = mixture.seen_from(nearest as f32, mirrored);
         let total = mixture.total();
-        let bucket = ((log_scale * 4.0 + 12.0) as usize).min(SCALE_BUCKETS - 1);
-        let offset_bucket = ((offset * (2 * OFFSET_BUCKETS) as f32) as usize).min(OFFSET_BUCKETS - 1);
+        let bucket = index_below(log_scale * 4.0 + 12.0, SCALE_BUCKETS);
+        let offset_bucket = index_below(offset * (2 * OFFSET_BUCKETS) as f32, OFFSET_BUCKETS);
         let by_scale = kind * SCALE_BUCKETS + bucket;
 
         let (up, down) = (mixture.above(tables, 0.5), mixture.below(tables, -0.5));
@@ -105,7 +105,7 @@ impl ResidualModel {
             coder,
             tables,
             [by_scale * OFFSET_BUCKETS + offset_bucket, contexts[0], contexts[1]],
-            &[tables.stretch_real(p_zero)],
+            [tables.stretch_real(p_zero)],
             kind,
             residual == 0,
         );
@@ -118,7 +118,7 @@ impl ResidualModel {
             coder,
             tables,
             [(by_scale >> 2) * OFFSET_BUCKETS + offset_bucket, sign ^ flip],
-            &[tables.stretch_real(up / (up + down))],
+            [tables.stretch_real(up / (up + down))],
             kind,
             residual > 0,
         );
@@ -137,7 +137,7 @@ impl ResidualModel {
                 coder,
                 tables,
                 [by_scale * EXPONENTS + e, contexts[0] * EXPONENTS + e, contexts[1] * EXPONENTS + e],
-                &[tables.stretch_real(above_high / above_low)],
+                [tables.stretch_real(above_high / above_low)],
                 kind * EXPONENTS + e,
                 magnitude >= 2 << exponent,
             );
@@ -164,7 +164,7 @@ impl ResidualModel {
                     coder,
                     tables,
                     [d * SCALE_BUCKETS + bucket, d * NUM_KINDS + kind],
-                    &[tables.stretch_real(p_upper)],
+                    [tables.stretch_real(p_upper)],
                     depth as usize,
                     bit,
                 )

@@ -69,8 +69,8 @@ impl Tables {
     /// Logistic function, as a probability in 1/65536.
     #[inline]
     pub(crate) fn squash(&self, x: f32) -> u32 {
-        let i = ((x + SQUASH_LIMIT) * (SQUASH_SIZE as f32 / (2.0 * SQUASH_LIMIT))) as usize;
-        u32::from(self.squash[i.min(SQUASH_SIZE - 1)])
+        let x = (x + SQUASH_LIMIT) * (SQUASH_SIZE as f32 / (2.0 * SQUASH_LIMIT));
+        u32::from(self.squash[index_below(x, SQUASH_SIZE)])
     }
 
     /// ln(p / (1 − p)) of a probability in 1/4096.
@@ -82,7 +82,7 @@ impl Tables {
     /// ln(p / (1 − p)) of a probability as a real number; out of range counts as the nearest end.
     #[inline(always)]
     pub(crate) fn stretch_real(&self, p: f32) -> f32 {
-        self.stretch[((p * STRETCH_SIZE as f32) as usize).min(STRETCH_SIZE - 1)]
+        self.stretch[index_below(p * STRETCH_SIZE as f32, STRETCH_SIZE)]
     }
 
     /// Share of the unit density above `z`, per lane: a narrow logistic with a wide one below it,
@@ -98,6 +98,13 @@ impl Tables {
         });
         Lanes(entry.map(|[value, _]| value)) + Lanes(entry.map(|[_, slope]| slope)) * rest
     }
+}
+
+/// The whole part of `x`, or the nearest end of `0..count`; 0 if `x` is no number. `count` is at most 2^16: processors
+/// have what cuts a float to 16 bits, to the sizes of pointers it takes many steps.
+#[inline(always)]
+pub(crate) fn index_below(x: f32, count: usize) -> usize {
+    usize::from(x as u16).min(count - 1)
 }
 
 /// Base-2 logarithm of a positive, normal number, to about 0.0002.

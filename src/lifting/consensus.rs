@@ -23,6 +23,15 @@ pub(crate) struct Consensus {
     pub(crate) width: Lanes,
 }
 
+/// Puts pairs of the first so many values in order, one after the other, without a loop: all of them stay in registers.
+macro_rules! network {
+    ($guesses:ident, [$count:literal] $($i:literal $j:literal),*) => {
+        let mut v: [Lanes; $count] = std::array::from_fn(|i| $guesses.values[i]);
+        $((v[$i], v[$j]) = (v[$i].min(v[$j]), v[$i].max(v[$j]));)*
+        $guesses.values[..$count].copy_from_slice(&v);
+    };
+}
+
 /// A short list of guesses.
 pub(crate) struct Guesses {
     values: [Lanes; MAX_GUESSES],
@@ -46,33 +55,22 @@ impl Guesses {
     }
 
     /// Sorts each coordinate for itself, by a network of comparisons (Batcher's odd–even merge
-    /// sort): the same steps for all of them, and no branches.
+    /// sort): the same steps for all of them, and no branches. Comparisons with empty places would change nothing.
     #[inline(always)]
     fn sort(&mut self) {
-        for (i, j) in NETWORK_8 {
-            self.exchange(i, j);
-        }
+        network!(self, [8] 0 1, 2 3, 0 2, 1 3, 1 2, 4 5, 6 7, 4 6, 5 7, 5 6, 0 4, 2 6, 2 4, 1 5, 3 7, 3 5, 1 2, 3 4, 5 6);
         if self.count > 12 {
-            for (i, j) in NETWORK_16 {
-                self.exchange(i, j);
-            }
+            network!(self, [16] 8 9, 10 11, 8 10, 9 11, 9 10, 12 13, 14 15, 12 14, 13 15, 13 14, 8 12, 10 14, 10 12,
+                9 13, 11 15, 11 13, 9 10, 11 12, 13 14, 0 8, 4 12, 4 8, 2 10, 6 14, 6 10, 2 4, 6 8, 10 12, 1 9, 5 13,
+                5 9, 3 11, 7 15, 7 11, 3 5, 7 9, 11 13, 1 2, 3 4, 5 6, 7 8, 9 10, 11 12, 13 14);
         } else if self.count > 8 {
-            for (i, j) in NETWORK_12 {
-                self.exchange(i, j);
-            }
+            network!(self, [12] 8 9, 10 11, 8 10, 9 11, 9 10, 9 10, 0 8, 4 8, 2 10, 6 10, 2 4, 6 8, 1 9, 5 9, 3 11, 7 11, 3 5, 7 9, 1 2, 3 4, 5 6, 7 8, 9 10);
         }
-    }
-
-    #[inline(always)]
-    fn exchange(&mut self, i: usize, j: usize) {
-        let (a, b) = (self.values[i], self.values[j]);
-        self.values[i] = a.min(b);
-        self.values[j] = a.max(b);
     }
 
     /// What they agree on. There must be one guess.
     #[inline]
-    pub(crate) fn consensus(mut self) -> Consensus {
+    pub(crate) fn consensus(&mut self) -> Consensus {
         self.sort();
         let count = self.count.min(MAX_GUESSES);
         let v = &self.values[..count];
@@ -104,99 +102,6 @@ fn closest(v: &[Lanes], step: usize, centre: impl Fn(usize, usize) -> Lanes) -> 
     }
     (best, least)
 }
-
-/// The network for eight values is how the one for sixteen begins.
-const NETWORK_8: [(usize, usize); 19] = {
-    let mut first = [(0, 0); 19];
-    let mut k = 0;
-    while k < first.len() {
-        first[k] = BATCHER_16[k];
-        k += 1;
-    }
-    first
-};
-
-/// What follows for up to `N` values: comparisons with empty places would change nothing.
-const fn rest<const LEN: usize>(count: usize) -> [(usize, usize); LEN] {
-    let mut rest = [(0, 0); LEN];
-    let (mut k, mut len) = (NETWORK_8.len(), 0);
-    while k < BATCHER_16.len() {
-        if BATCHER_16[k].1 < count {
-            rest[len] = BATCHER_16[k];
-            len += 1;
-        }
-        k += 1;
-    }
-    assert!(len == LEN);
-    rest
-}
-const NETWORK_12: [(usize, usize); 23] = rest(12);
-const NETWORK_16: [(usize, usize); 44] = rest(16);
-const BATCHER_16: [(usize, usize); 63] = [
-    (0, 1),
-    (2, 3),
-    (0, 2),
-    (1, 3),
-    (1, 2),
-    (4, 5),
-    (6, 7),
-    (4, 6),
-    (5, 7),
-    (5, 6),
-    (0, 4),
-    (2, 6),
-    (2, 4),
-    (1, 5),
-    (3, 7),
-    (3, 5),
-    (1, 2),
-    (3, 4),
-    (5, 6),
-    (8, 9),
-    (10, 11),
-    (8, 10),
-    (9, 11),
-    (9, 10),
-    (12, 13),
-    (14, 15),
-    (12, 14),
-    (13, 15),
-    (13, 14),
-    (8, 12),
-    (10, 14),
-    (10, 12),
-    (9, 13),
-    (11, 15),
-    (11, 13),
-    (9, 10),
-    (11, 12),
-    (13, 14),
-    (0, 8),
-    (4, 12),
-    (4, 8),
-    (2, 10),
-    (6, 14),
-    (6, 10),
-    (2, 4),
-    (6, 8),
-    (10, 12),
-    (1, 9),
-    (5, 13),
-    (5, 9),
-    (3, 11),
-    (7, 15),
-    (7, 11),
-    (3, 5),
-    (7, 9),
-    (11, 13),
-    (1, 2),
-    (3, 4),
-    (5, 6),
-    (7, 8),
-    (9, 10),
-    (11, 12),
-    (13, 14),
-];
 
 #[cfg(test)]
 mod tests {

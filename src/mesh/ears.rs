@@ -52,9 +52,23 @@ impl Bytes {
     }
 
     #[inline(always)]
-    fn remove(&mut self, corner: usize) {
+    pub(crate) fn remove(&mut self, corner: usize) {
         let below = Self::below(corner);
         self.0 = self.0 & below | self.0 >> 8 & !below;
+    }
+
+    #[inline(always)]
+    fn least(self) -> u8 {
+        self.0.to_le_bytes().into_iter().fold(u8::MAX, u8::min)
+    }
+
+    /// The corners that have this value.
+    #[inline(always)]
+    pub(crate) fn corners_with(self, value: u8) -> Corners {
+        const LOW: u64 = 0x7f7f_7f7f_7f7f_7f7f;
+        let differ = self.0 ^ (u64::from(value) * 0x0101_0101_0101_0101);
+        // Of a byte that is not 0 either the highest bit is set, or what is added to the rest carries into it.
+        Corners(!(((differ & LOW) + LOW) | differ | LOW))
     }
 
     /// The bytes before `corner`, of at most seven.
@@ -64,26 +78,51 @@ impl Bytes {
     }
 }
 
-/// How far two cells are apart, squared: the length of a cut.
-#[inline(always)]
-pub(crate) fn squared_distance(p: [i32; 3], q: [i32; 3]) -> f32 {
-    let [x, y, z] = std::array::from_fn(|i| q[i].wrapping_sub(p[i]) as f32);
-    (x * x + y * y) + z * z
+/// Some of the corners: of each the highest bit of its byte.
+#[derive(Clone, Copy)]
+pub(crate) struct Corners(u64);
+
+impl Corners {
+    #[inline(always)]
+    pub(crate) fn has_some_of(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    #[inline(always)]
+    fn is_one(self) -> bool {
+        self.0.is_power_of_two()
+    }
+}
+
+impl Iterator for Corners {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let corner = (self.0 != 0).then_some(self.0.trailing_zeros() as usize / 8);
+        self.0 &= self.0.wrapping_sub(1);
+        corner
+    }
 }
 
 /// A hole that is closed ear by ear.
 pub(crate) struct Hole {
-    /// Corners left, counter-clockwise: what they are called, and their valence less any constant.
+    /// Corners left, counter-clockwise: what they are called, and their valence less any constant. No valence is as large
+    /// as what stands behind the last one.
     names: Bytes,
     valences: Bytes,
     count: usize,
 }
 
+/// The names of corners that are called by their places.
+pub(crate) const IN_ORDER: Bytes = Bytes(0x0706_0504_0302_0100);
+
 /// A corner that may be cut off, with those before and after it.
 #[derive(Clone, Copy)]
 pub(crate) struct Ear {
-    place: usize,
+    pub(crate) place: usize,
     pub(crate) before: usize,
+    #[cfg_attr(not(feature = "encoder"), allow(dead_code))]
     pub(crate) corner: usize,
     pub(crate) after: usize,
 }
@@ -91,8 +130,9 @@ pub(crate) struct Ear {
 impl Hole {
     /// `count <= MAX_CORNERS`.
     #[inline(always)]
-    pub(crate) fn new(valences: Bytes, count: usize) -> Self {
-        Self { names: Bytes(0x0706_0504_0302_0100), valences, count }
+    pub(crate) fn new(names: Bytes, valences: Bytes, count: usize) -> Self {
+        let behind = u64::MAX.unbounded_shl(8 * count as u32);
+        Self { names, valences: Bytes(valences.0 | behind), count }
     }
 
     /// Corners left.
@@ -101,36 +141,56 @@ impl Hole {
         self.count
     }
 
-    /// The ear to cut off next, among those that are `allowed`.
+    /// The ear to cut off next, among those that are `allowed`. `length` is that of a cut between two corners.
+    #[cfg(any(feature = "encoder", test))]
     #[inline(always)]
     pub(crate) fn next_ear(
         &self,
-        position: impl Fn(usize) -> [i32; 3],
+        length: impl Fn(usize, usize) -> f32,
         allowed: impl Fn(Ear) -> bool,
     ) -> Option<Ear> {
-        let cut = |ear: Ear| squared_distance(position(ear.before), position(ear.after));
-        let mut least = u8::MAX;
-        let mut best: Option<Ear> = None;
-        // Length of the best one's cut; needed only if there are several of its valence.
-        let mut shortest = None;
-        for place in 0..self.count {
-            let valence = self.valences.get(place);
-            if valence > least {
-                continue;
+        let mut rest = self.valences;
+        while rest.least() < u8::MAX {
+            let equals = rest.corners_with(rest.least());
+            if let Some(ear) = self.shortest(equals, &length, &allowed) {
+                return Some(ear);
             }
+            equals.for_each(|place| rest.0 |= 0xff << (8 * place));
+        }
+        None
+    }
+
+    /// Places of the corners of least valence.
+    #[inline(always)]
+    pub(crate) fn of_least_valence(&self) -> Corners {
+        self.valences.corners_with(self.valences.least())
+    }
+
+    /// The ear with the shortest cut, the first one if equal, at these places.
+    #[inline(always)]
+    pub(crate) fn shortest(
+        &self,
+        places: Corners,
+        length: impl Fn(usize, usize) -> f32,
+        allowed: impl Fn(Ear) -> bool,
+    ) -> Option<Ear> {
+        let is_one = places.is_one();
+        let mut best = None;
+        let mut shortest = f32::INFINITY;
+        for place in places {
             let ear = self.ear(place);
-            let mut length = None;
-            if let Some(best) = best.filter(|_| valence == least) {
-                let other = *shortest.get_or_insert_with(|| cut(best));
-                if *length.insert(cut(ear)) >= other {
-                    continue;
-                }
-            }
-            if allowed(ear) {
-                (least, best, shortest) = (valence, Some(ear), length);
+            let length = if is_one { 0.0 } else { length(ear.before, ear.after) };
+            if length < shortest && allowed(ear) {
+                (best, shortest) = (Some(ear), length);
             }
         }
         best
+    }
+
+    /// What the corner at a place is called, and its valence less the constant.
+    #[inline(always)]
+    pub(crate) fn corner(&self, place: usize) -> (usize, u8) {
+        (usize::from(self.names.get(place)), self.valences.get(place))
     }
 
     /// Cuts an ear off: the corners beside it get an edge more.
@@ -141,6 +201,7 @@ impl Hole {
         self.valences.add(after, 1);
         self.names.remove(ear.place);
         self.valences.remove(ear.place);
+        self.valences.0 |= 0xff << 56;
         self.count -= 1;
     }
 
@@ -151,8 +212,9 @@ impl Hole {
         Ear { place, before: name(before), corner: name(place), after: name(after) }
     }
 
+    /// The places before and after one.
     #[inline(always)]
-    fn beside(&self, place: usize) -> [usize; 2] {
+    pub(crate) fn beside(&self, place: usize) -> [usize; 2] {
         let before = if place == 0 { self.count - 1 } else { place - 1 };
         let after = if place + 1 == self.count { 0 } else { place + 1 };
         [before, after]
@@ -162,14 +224,16 @@ impl Hole {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::Cell;
 
     fn ears(valences: &[u8], positions: &[[i32; 3]]) -> Vec<usize> {
         let mut bytes = Bytes::default();
         valences.iter().enumerate().for_each(|(i, &valence)| bytes.add(i, valence));
-        let mut hole = Hole::new(bytes, valences.len());
+        let mut hole = Hole::new(IN_ORDER, bytes, valences.len());
+        let length = |i: usize, j: usize| Cell::new(positions[i]).squared_distance(Cell::new(positions[j]));
         let mut ears = Vec::new();
         while hole.len() > 3 {
-            let ear = hole.next_ear(|i| positions[i], |_| true).unwrap();
+            let ear = hole.next_ear(length, |_| true).unwrap();
             ears.push(ear.corner);
             hole.cut(ear);
         }

@@ -71,6 +71,7 @@ impl Surface {
     }
 
     /// Links the edges that face two corners.
+    #[cfg(feature = "encoder")]
     #[inline]
     pub fn link(&mut self, a: u32, b: u32) {
         if a != NO_CORNER {

@@ -224,7 +224,7 @@ impl<'a> Grower<'a> {
         let bounds = usize::from(at_pivot.is_at_boundary) * 2 + usize::from(at_end.is_at_boundary);
         let contexts = [bounds * 2 + usize::from(at_tip.is_at_boundary), pair * 4 + bounds];
         let has_face = &mut self.models.has_face;
-        if !has_face.code(coder, Tables::get(), contexts, &[], 0, beyond != NO_CORNER) {
+        if !has_face.code(coder, Tables::get(), contexts, [], 0, beyond != NO_CORNER) {
             [pivot, end].iter().for_each(|&v| self.around[v as usize].is_at_boundary = true);
             return Ok(());
         }
@@ -269,14 +269,14 @@ impl<'a> Grower<'a> {
         let tables = Tables::get();
         let known = wanted.map_or(u32::MAX, |w| self.vertex_of_target[w as usize]);
         let [is_new, is_left, is_right] = &mut self.models.tip;
-        if is_new.code(coder, tables, contexts, &[], set, known == u32::MAX) {
+        if is_new.code(coder, tables, contexts, [], set, known == u32::MAX) {
             return Ok((self.add_vertex(wanted)?, Tip::New));
         }
         for (bit, vertex, tip) in
             [(is_left, beside[0], Tip::BesidePivot), (is_right, beside[1], Tip::BesideEnd)]
         {
             if let Some(vertex) = vertex
-                && bit.code(coder, tables, contexts, &[], set, vertex == known)
+                && bit.code(coder, tables, contexts, [], set, vertex == known)
             {
                 return Ok((vertex, tip));
             }

@@ -8,10 +8,10 @@ use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::bitstream::mixer::{MixedBit, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::streams::stream;
-use crate::bitstream::tables::Tables;
-use crate::lanes::Lanes;
+use crate::bitstream::tables::{Tables, index_below};
+use crate::lanes::Cell;
 use crate::mesh::Surface;
-use crate::mesh::ears::{MAX_VALENCE, squared_distance};
+use crate::mesh::ears::MAX_VALENCE;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use std::collections::{HashMap, VecDeque};
 
@@ -74,37 +74,42 @@ impl ConnectivityModels {
 }
 
 /// What is known at a vertex so far.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Around {
+    cell: Cell,
     /// In the coarse mesh.
     valence: u32,
     /// Faces that are not decided yet.
     undecided: u32,
     /// What the patches so far will add to the valence.
     gained: i16,
+    /// The valence as it will be then, as far as the rule tells it apart.
+    live: u8,
     /// Patches that touch the vertex.
     touched: u8,
 }
 
 impl Around {
-    fn live_valence(self) -> i32 {
-        self.valence as i32 + i32::from(self.gained)
+    fn new(cell: [i32; 3], valence: u32) -> Self {
+        let live = valence.min(MAX_VALENCE) as u8;
+        Self { cell: Cell::new(cell), valence, undecided: 0, gained: 0, live, touched: 0 }
     }
 
     /// 0 if a patch touches the vertex; else 1 to 3, the fewer faces are left the higher: a maximal
-    /// set of removed vertices leaves no vertex untouched.
-    fn urgency(self) -> usize {
-        match (self.touched, self.undecided) {
-            (1.., _) => 0,
-            (0, 1) => 3,
-            (0, 2) => 2,
-            _ => 1,
-        }
+    /// set of removed vertices leaves no vertex untouched. One face is left at least.
+    #[inline(always)]
+    fn urgency(&self) -> usize {
+        if self.touched > 0 { 0 } else { 4 - self.undecided.min(3) as usize }
+    }
+
+    fn gain(&mut self, gained: i16) {
+        self.gained = self.gained.saturating_add(gained);
+        self.live = (self.valence as i32 + i32::from(self.gained)).clamp(0, MAX_VALENCE as i32) as u8;
     }
 
     fn touch(&mut self, gained: i16) {
         self.touched = self.touched.saturating_add(1);
-        self.gained = self.gained.saturating_add(gained);
+        self.gain(gained);
     }
 }
 
@@ -119,7 +124,13 @@ enum Face {
 #[derive(Clone, Copy)]
 struct Growth {
     inside: u32,
+    /// [`Fit::Unknown`] if it cannot grow there.
     fit: Fit,
+}
+
+impl Growth {
+    /// Over no edge.
+    const NONE: Self = Self { inside: NO_CORNER, fit: Fit::Unknown };
 }
 
 /// Codes the patches of one level: exactly `count` of them when decoding.
@@ -153,8 +164,8 @@ pub(crate) struct PausedWalk {
 impl PausedWalk {
     pub(crate) fn new(mesh: &GridMesh, count: usize) -> Self {
         let surface = &mesh.surface;
-        let at = |&valence: &u32| Around { valence, ..Around::default() };
-        let around = surface.valence.iter().map(at).collect();
+        let at = |(&valence, &cell)| Around::new(cell, valence);
+        let around = surface.valence.iter().zip(&mesh.positions).map(at).collect();
         let faces = vec![Face::Undecided; surface.triangles.len()];
         Self { count, faces, around, ..Self::default() }
     }
@@ -199,7 +210,9 @@ impl PausedWalk {
 
 struct Walk<'a> {
     surface: &'a Surface,
-    positions: &'a [[i32; 3]],
+    /// At each corner, and the corner across from each: as the surface has them, at hand.
+    vertices: &'a [u32],
+    opposite: &'a [u32],
     models: &'a mut ConnectivityModels,
     target: Option<&'a ConnectivityTarget>,
     count: usize,
@@ -218,7 +231,7 @@ struct Walk<'a> {
     fit: Fit,
     /// What is known of the edges that may be looked at next: those of the face at the gate, until the
     /// patch grows.
-    growths: [Option<Growth>; 2],
+    growths: [Growth; 2],
 }
 
 impl<'a> Walk<'a> {
@@ -230,11 +243,12 @@ impl<'a> Walk<'a> {
     ) -> Self {
         let PausedWalk { count, patches, faces, around, gates, num_counted: _, next_corner, next_seed } =
             paused;
-        let (surface, positions) = (&mesh.surface, &mesh.positions[..]);
+        let surface = &mesh.surface;
         let frontier = Vec::new();
         Self {
             surface,
-            positions,
+            vertices: surface.triangles.as_flattened(),
+            opposite: &surface.opposite,
             models,
             target,
             count,
@@ -247,7 +261,7 @@ impl<'a> Walk<'a> {
             next_seed,
             polygon: Polygon::default(),
             fit: Fit::Is,
-            growths: [None; 2],
+            growths: [Growth::NONE; 2],
         }
     }
 
@@ -264,18 +278,26 @@ impl<'a> Walk<'a> {
 
     /// Vertices of valence two that hang on a boundary edge, in the order of the corners.
     fn code_ears<B: BitCoder>(&mut self, coder: &mut B, work: &mut Work) -> Result<bool, Malformed> {
-        let end = self.surface.opposite.len() as u32;
+        let end = self.opposite.len() as u32;
         while self.next_corner < end {
             let corner = self.next_corner;
             // Corners that face no boundary cost next to nothing.
-            if corner.is_multiple_of(64) && !work.take(1) {
-                return Ok(false);
+            if corner.is_multiple_of(64) {
+                if !work.take(1) {
+                    return Ok(false);
+                }
+                let block = &self.opposite[corner as usize..];
+                let block = &block[..block.len().min(64)];
+                if !has_boundary(block) {
+                    self.next_corner += block.len() as u32;
+                    continue;
+                }
             }
             self.next_corner += 1;
-            if self.surface.across(corner) != NO_CORNER {
+            if self.across(corner) != NO_CORNER {
                 continue;
             }
-            let ends = [next(corner), prev(corner)].map(|c| self.surface.vertex(c) as usize);
+            let ends = [next(corner), prev(corner)].map(|c| self.vertex(c) as usize);
             let context = ends.iter().filter(|&&v| self.around[v].touched > 0).count();
             let wanted = self.target.is_some_and(|t| t.ear_at.contains_key(&corner));
             if self.models.ear.code(coder, context, wanted) {
@@ -301,7 +323,7 @@ impl<'a> Walk<'a> {
                 if coder.is_exhausted() || coder.is_guessing() {
                     return Err(Malformed(EXHAUSTED));
                 }
-                let beyond = self.surface.across(gate);
+                let beyond = self.across(gate);
                 if beyond != NO_CORNER && self.faces[(beyond / 3) as usize] == Face::Undecided {
                     self.decide(coder, beyond, false)?;
                 }
@@ -322,13 +344,13 @@ impl<'a> Walk<'a> {
     /// Where the walk of a component starts whose first vertex is at `corner`: at the edge to the
     /// vertex after it, if that is there.
     fn seed_at(&self, corner: u32) -> u32 {
-        let second = self.surface.vertex(corner) + 1;
+        let second = self.vertex(corner) + 1;
         let there = |c: u32| (c != NO_CORNER).then_some(c);
         let lefts = std::iter::successors(Some(corner), |&c| there(self.surface.swing_left(c)));
         let rights = std::iter::successors(Some(corner), |&c| there(self.surface.swing_right(c)));
         let turn = |(i, c): (usize, u32)| (i == 0 || c != corner).then_some(c);
         let mut around = lefts.enumerate().map_while(turn).chain(rights.enumerate().map_while(turn));
-        prev(around.find(|&c| self.surface.vertex(next(c)) == second).unwrap_or(corner))
+        prev(around.find(|&c| self.vertex(next(c)) == second).unwrap_or(corner))
     }
 
     /// Codes whether the face of `corner` is in a patch, and the patch if so. `corner` faces the
@@ -340,21 +362,21 @@ impl<'a> Walk<'a> {
             let is_in_patch = coder.decide(self.face_stream(corner, is_seed), wanted != NOT_IN_PATCH);
             return self.settle(coder, corner, is_seed, wanted, is_in_patch);
         }
-        let start = Triangle {
-            vertices: [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c)),
-            valences: [next(corner), prev(corner), corner].map(|c| self.live_valence_at(c)),
-        };
-        self.growths = [None; 2];
+        let ends = [next(corner), prev(corner), corner].map(|c| self.at(c));
+        let start = Triangle { cells: ends.map(|v| v.cell), valences: ends.map(|v| v.live) };
+        let mut growths = [Growth::NONE; 2];
         if !is_seed {
-            self.growths =
+            growths =
                 [self.first_growth(&start, next(corner), 1), self.first_growth(&start, prev(corner), 2)];
         }
-        let (contexts, set) = self.face_contexts(corner, is_seed);
-        let tables = Tables::get();
-        let is_in_patch =
-            self.models.in_patch.code(coder, tables, contexts, &[], set, wanted != NOT_IN_PATCH);
-        self.polygon = Polygon::of_triangle(&start, usize::from(!is_seed));
-        self.fit = Fit::Is;
+        let (contexts, set) = self.face_contexts(corner, is_seed, ends, growths.map(|growth| growth.fit));
+        let is_wanted = wanted != NOT_IN_PATCH;
+        let is_in_patch = self.models.in_patch.code(coder, Tables::get(), contexts, [], set, is_wanted);
+        if is_in_patch {
+            self.polygon.begin(&start, usize::from(!is_seed));
+            self.fit = Fit::Is;
+            self.growths = growths;
+        }
         self.settle(coder, corner, is_seed, wanted, is_in_patch)
     }
 
@@ -370,7 +392,7 @@ impl<'a> Walk<'a> {
     ) -> Result<(), Malformed> {
         let face = corner / 3;
         if !is_in_patch {
-            self.mark(face, Face::Kept);
+            self.keep(face);
             self.gates.push_back(next(corner));
             self.gates.push_back(prev(corner));
             if is_seed {
@@ -388,7 +410,7 @@ impl<'a> Walk<'a> {
         }
         while let Some(inside) = self.frontier.pop() {
             if self.code_growth(coder, inside, wanted) {
-                let entered = self.surface.across(inside);
+                let entered = self.across(inside);
                 self.take(entered / 3);
                 self.frontier.extend([prev(entered), next(entered)]);
             } else {
@@ -399,48 +421,57 @@ impl<'a> Walk<'a> {
         self.finish_patch(coder, wanted)
     }
 
-    fn live_valence_at(&self, corner: u32) -> u8 {
-        let live = self.around[self.surface.vertex(corner) as usize].live_valence();
-        live.clamp(0, MAX_VALENCE as i32) as u8
+    #[inline(always)]
+    fn vertex(&self, corner: u32) -> u32 {
+        self.vertices[corner as usize]
+    }
+
+    #[inline(always)]
+    fn across(&self, corner: u32) -> u32 {
+        self.opposite[corner as usize]
+    }
+
+    /// What is known at the vertex of a corner.
+    #[inline(always)]
+    fn at(&self, corner: u32) -> &Around {
+        &self.around[self.vertex(corner) as usize]
     }
 
     /// The corner beyond the edge that `inside` faces, if a patch can grow over it.
     fn undecided_across(&self, inside: u32) -> Option<u32> {
-        let beyond = self.surface.across(inside);
+        let beyond = self.across(inside);
         let is_open = beyond != NO_CORNER && self.faces[(beyond / 3) as usize] == Face::Undecided;
         is_open.then_some(beyond)
     }
 
     /// What growing over edge `edge` of the first triangle would make of a patch.
-    fn first_growth(&self, start: &Triangle, inside: u32, edge: usize) -> Option<Growth> {
-        let beyond = self.undecided_across(inside)?;
-        let (tip, valence) = (self.surface.vertex(beyond), self.live_valence_at(beyond));
-        Some(Growth { inside, fit: start.fit_grown(edge, tip, valence, self.positions) })
+    #[inline(always)]
+    fn first_growth(&self, start: &Triangle, inside: u32, edge: usize) -> Growth {
+        let Some(beyond) = self.undecided_across(inside) else { return Growth::NONE };
+        let tip = self.at(beyond);
+        Growth { inside, fit: start.fit_grown(edge, tip.cell, tip.live) }
     }
 
-    /// What growing over the edge that `inside` faces would make of the patch. `None` if it cannot.
-    fn growth(&self, inside: u32) -> Option<Growth> {
-        let beyond = self.undecided_across(inside)?;
-        Some(Growth { inside, fit: self.grown_polygon(beyond).fit(self.positions) })
+    /// What is known of growing over the edge that `inside` faces.
+    #[inline(always)]
+    fn known_fit(&self, inside: u32) -> Option<Fit> {
+        self.growths.iter().find(|growth| growth.inside == inside).map(|growth| growth.fit)
     }
 
-    fn grown_polygon(&self, beyond: u32) -> Polygon {
-        self.polygon.grown(self.surface.vertex(beyond), self.live_valence_at(beyond))
-    }
-
-    fn mark(&mut self, face: u32, state: Face) {
-        self.faces[face as usize] = state;
+    fn keep(&mut self, face: u32) {
+        self.faces[face as usize] = Face::Kept;
         for v in self.surface.triangles[face as usize] {
             self.around[v as usize].undecided -= 1;
         }
     }
 
     fn take(&mut self, face: u32) {
-        self.mark(face, Face::InPatch);
+        self.faces[face as usize] = Face::InPatch;
         self.patches.push_face(face);
         for v in self.surface.triangles[face as usize] {
-            let gained = &mut self.around[v as usize].gained;
-            *gained = gained.saturating_sub(1);
+            let around = &mut self.around[v as usize];
+            around.undecided -= 1;
+            around.gain(-1);
         }
     }
 
@@ -451,17 +482,17 @@ impl<'a> Walk<'a> {
             let grows = self.target.is_some_and(|t| t.patch_of_face[(beyond / 3) as usize] == wanted);
             return coder.decide(self.growth_stream(beyond), grows);
         }
-        let known =
-            |inside: u32| self.growths.iter().flatten().find(|growth| growth.inside == inside).copied();
-        let Some(Growth { fit, .. }) = known(inside).or_else(|| self.growth(inside)) else { return false };
-        let after = self.frontier.last().and_then(|&after| known(after));
-        let beyond = self.surface.across(inside);
-        let (contexts, set) = self.growth_contexts(inside, beyond, fit, fit_of(after));
+        let Some(beyond) = self.undecided_across(inside) else { return false };
+        let &Around { cell: tip, live: valence, .. } = self.at(beyond);
+        let fit = self.known_fit(inside).unwrap_or_else(|| self.polygon.fit_grown(tip, valence));
+        let after = self.frontier.last().and_then(|&after| self.known_fit(after)).unwrap_or(Fit::Unknown);
+        let (contexts, set) = self.growth_contexts(inside, beyond, fit, after);
         let grows = self.target.is_some_and(|t| t.patch_of_face[(beyond / 3) as usize] == wanted);
-        let grows = self.models.grow.code(coder, Tables::get(), contexts, &[], set, grows);
+        let grows = self.models.grow.code(coder, Tables::get(), contexts, [], set, grows);
         if grows {
-            (self.polygon, self.fit) = (self.grown_polygon(beyond), fit);
-            self.growths = [None; 2];
+            self.polygon.grow(tip, valence);
+            self.fit = fit;
+            self.growths = [Growth::NONE; 2];
         }
         grows
     }
@@ -471,7 +502,7 @@ impl<'a> Walk<'a> {
         let mut open_edge = CLOSED;
         let (edges, _) = self.patches.unfinished();
         for (i, &corner) in edges.iter().enumerate() {
-            if self.surface.across(corner) == NO_CORNER && !self.patches.has_ear(corner) {
+            if self.across(corner) == NO_CORNER && !self.patches.has_ear(corner) {
                 let opens = self.target.is_some_and(|t| t.patch_open_at.get(&corner) == Some(&wanted));
                 if self.models.open.code(coder, 0, opens) {
                     open_edge = i as u32;
@@ -482,7 +513,7 @@ impl<'a> Walk<'a> {
         let degree = edges.len();
         for (i, &corner) in edges.iter().enumerate() {
             self.gates.push_back(corner);
-            let v = self.surface.vertex(next(corner)) as usize;
+            let v = self.vertex(next(corner)) as usize;
             let is_end =
                 open_edge != CLOSED && (i as u32 == open_edge || i == (open_edge as usize + 1) % degree);
             self.around[v].touch(if is_end { 1 } else { 2 });
@@ -494,9 +525,9 @@ impl<'a> Walk<'a> {
     /// Which stream says whether a face is in a patch.
     #[inline]
     fn face_stream(&self, corner: u32, is_seed: bool) -> usize {
-        let tip = self.around[self.surface.vertex(corner) as usize];
+        let tip = self.around[self.vertex(corner) as usize];
         let is_beside_patch = !is_seed && self.state_across(corner) == Face::InPatch as usize;
-        let live = (tip.live_valence() - 3).clamp(0, 4) as usize;
+        let live = tip.live.saturating_sub(3).min(4) as usize;
         stream::IN_PATCH + (live * 2 + usize::from(tip.touched > 0)) * 2 + usize::from(is_beside_patch)
     }
 
@@ -504,39 +535,45 @@ impl<'a> Walk<'a> {
     #[inline]
     fn growth_stream(&self, beyond: u32) -> usize {
         let (_, faces) = self.patches.unfinished();
-        let far = self.around[self.surface.vertex(beyond) as usize];
-        let live = (far.live_valence() - 4).clamp(0, 2) as usize;
+        let far = self.around[self.vertex(beyond) as usize];
+        let live = far.live.saturating_sub(4).min(2) as usize;
         stream::GROW + (faces.len().min(4) - 1) * 6 + live * 2 + usize::from(far.touched > 0)
     }
 
     fn state_across(&self, corner: u32) -> usize {
-        match self.surface.across(corner) {
+        match self.across(corner) {
             NO_CORNER => 3,
             o => self.faces[(o / 3) as usize] as usize,
         }
     }
 
-    fn face_contexts(&self, corner: u32, is_seed: bool) -> ([usize; 6], usize) {
-        let [a, b, tip] = [next(corner), prev(corner), corner].map(|c| self.surface.vertex(c) as usize);
+    #[inline(always)]
+    fn face_contexts(
+        &self,
+        corner: u32,
+        is_seed: bool,
+        ends: [&Around; 3],
+        [first, second]: [Fit; 2],
+    ) -> ([usize; 6], usize) {
         let source = if is_seed { 2 } else { self.state_across(corner).saturating_sub(1).min(1) };
         let around = self.state_across(next(corner)) * 4 + self.state_across(prev(corner));
-        let ends = [a, b, tip].map(|v| self.around[v]);
         let urgency = ends.map(Around::urgency);
         let touched = ends.iter().fold(0, |t, e| t * 3 + usize::from(e.touched.min(2)));
-        let live = ends.iter().fold(0, |t, e| t * 8 + bucket(e.live_valence(), 3));
-        let coarse = ends.iter().fold(0, |t, e| t * 8 + bucket(e.valence as i32, 3));
+        let live = ends.iter().fold(0, |t, e| t * 8 + bucket(e.live.into(), 3));
+        let coarse = ends.iter().fold(0, |t, e| t * 8 + bucket(e.valence, 3));
 
-        let [pa, pb, pt] = [a, b, tip].map(|v| self.positions[v]);
-        let gate = squared_distance(pa, pb);
-        let shape = share(gate * 2.0, squared_distance(pb, pt) + squared_distance(pt, pa), 8);
-        let beyond = self.surface.across(corner);
+        let [a, b, tip] = ends.map(|v| v.cell);
+        let gate = a.squared_distance(b);
+        let angle = Angle::new(tip, a, b);
+        let shape = share(gate * 2.0, angle.squares[1] + angle.squares[0], 8);
+        let beyond = self.across(corner);
         let (fold, angle_beyond) = if beyond == NO_CORNER {
             (7, 4)
         } else {
-            let outside = self.positions[self.surface.vertex(beyond) as usize];
-            (share(squared_distance(outside, pt), gate * 3.0, 8), steps(cosine(outside, pa, pb), 8))
+            let outside = self.at(beyond).cell;
+            let cosine = Angle::new(outside, a, b).cosine();
+            (share(outside.squared_distance(tip), gate * 3.0, 8), steps(cosine, 8))
         };
-        let [first, second] = self.growths.map(fit_of);
         let prospects = first as usize * FITS + second as usize;
         let contexts = [
             (prospects * 4 + urgency[2]) * 3 + source,
@@ -544,26 +581,26 @@ impl<'a> Walk<'a> {
             touched * 512 + live,
             coarse * 3 + source,
             (shape * 8 + fold) * 12 + urgency[2] * 3 + source,
-            (steps(cosine(pt, pa, pb), 16) * 8 + angle_beyond) * 16 + around,
+            (steps(angle.cosine(), 16) * 8 + angle_beyond) * 16 + around,
         ];
         (contexts, urgency[0].max(urgency[1]).max(urgency[2]) * 2 + usize::from(source == 1))
     }
 
+    #[inline(always)]
     fn growth_contexts(&self, inside: u32, beyond: u32, fit: Fit, after: Fit) -> ([usize; 6], usize) {
         let (_, faces) = self.patches.unfinished();
         let size = faces.len().min(MAX_SIZE) - 1;
-        let [a, b, tip, far] =
-            [next(inside), prev(inside), inside, beyond].map(|c| self.surface.vertex(c) as usize);
-        let [va, vb, vt, vf] = [a, b, tip, far].map(|v| self.around[v].live_valence());
-        let pair = |x: i32, y: i32| bucket(x, 2) * 8 + bucket(y, 2);
-        let urgency = self.around[far].urgency();
+        let corners = [next(inside), prev(inside), inside, beyond].map(|c| self.at(c));
+        let [va, vb, vt, vf] = corners.map(|v| u32::from(v.live));
+        let pair = |x: u32, y: u32| bucket(x, 2) * 8 + bucket(y, 2);
+        let urgency = corners[3].urgency();
         let state = (size * FITS + self.fit as usize) * FITS + fit as usize;
         let outlook = state * FITS + after as usize;
 
-        let [pa, pb, pt, pf] = [a, b, tip, far].map(|v| self.positions[v]);
-        let length = squared_distance(pa, pb);
-        let flipped = squared_distance(pt, pf);
-        let (near_cosine, far_cosine) = (cosine(pt, pa, pb), cosine(pf, pa, pb));
+        let [a, b, tip, far] = corners.map(|v| v.cell);
+        let length = a.squared_distance(b);
+        let flipped = tip.squared_distance(far);
+        let (near_cosine, far_cosine) = (Angle::new(tip, a, b).cosine(), Angle::new(far, a, b).cosine());
         let contexts = [
             outlook * 4 + urgency,
             outlook * 8 + bucket(vf, 3),
@@ -576,30 +613,48 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// [`Fit::Unknown`] if the patch cannot grow there.
-fn fit_of(growth: Option<Growth>) -> Fit {
-    growth.map_or(Fit::Unknown, |growth| growth.fit)
+/// Whether one of the corners faces the boundary. Looks at all of them, as that is done side by side.
+fn has_boundary(opposite: &[u32]) -> bool {
+    opposite.iter().fold(false, |found, &o| found | (o == NO_CORNER))
 }
 
 /// `value − first` clamped to 0..8.
-fn bucket(value: i32, first: i32) -> usize {
-    (value - first).clamp(0, 7) as usize
+#[inline(always)]
+fn bucket(value: u32, first: u32) -> usize {
+    value.saturating_sub(first).min(7) as usize
 }
 
 /// x / (x + y) in `levels` equal steps; the middle if both vanish.
+#[inline(always)]
 fn share(x: f32, y: f32, levels: usize) -> usize {
     let sum = x + y;
-    if sum > 0.0 { ((x / sum * levels as f32) as usize).min(levels - 1) } else { levels / 2 }
+    if sum > 0.0 { index_below(x / sum * levels as f32, levels) } else { levels / 2 }
 }
 
-/// Cosine of the angle at `tip` over the edge a–b, 0 if a side vanishes.
-fn cosine(tip: [i32; 3], a: [i32; 3], b: [i32; 3]) -> f32 {
-    let (u, v) = (Lanes::between(tip, a), Lanes::between(tip, b));
-    let length = (u.dot3(u) * v.dot3(v)).sqrt();
-    if length > 0.0 { u.dot3(v) / length } else { 0.0 }
+/// The angle at a tip over the edge a–b.
+struct Angle {
+    /// Of the lengths of its sides.
+    squares: [f32; 2],
+    product: f32,
+}
+
+impl Angle {
+    #[inline(always)]
+    fn new(tip: Cell, a: Cell, b: Cell) -> Self {
+        let (u, v) = (tip.to(a), tip.to(b));
+        Self { squares: [u.dot3(u), v.dot3(v)], product: u.dot3(v) }
+    }
+
+    /// 0 if a side vanishes.
+    #[inline(always)]
+    fn cosine(&self) -> f32 {
+        let length = (self.squares[0] * self.squares[1]).sqrt();
+        if length > 0.0 { self.product / length } else { 0.0 }
+    }
 }
 
 /// A cosine in `count` equal steps, the sharpest angle first.
+#[inline(always)]
 fn steps(cosine: f32, count: usize) -> usize {
-    ((1.0 - cosine) * 0.5 * count as f32).clamp(0.0, (count - 1) as f32) as usize
+    index_below((1.0 - cosine) * (0.5 * count as f32), count)
 }

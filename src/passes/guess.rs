@@ -4,7 +4,7 @@
 use super::surroundings::{NUM_CLASSES, Surroundings};
 use crate::bitstream::mixture::Mixture;
 pub(crate) use crate::bitstream::residual::NUM_KINDS;
-use crate::bitstream::tables::{exp2, log2};
+use crate::bitstream::tables::{exp2, index_below, log2};
 use crate::lanes::Lanes;
 use crate::lifting::affine::AffineFilter;
 use crate::lifting::consensus::{Consensus, Guesses, MAX_GUESSES};
@@ -405,5 +405,5 @@ impl Frame {
 /// Buckets of a base-2 logarithm: `per_octave` to the octave, from the floor on.
 #[inline(always)]
 pub(crate) fn log_level(log: f32, per_octave: f32, count: usize) -> usize {
-    ((log + 1.5) * per_octave).clamp(0.0, (count - 1) as f32) as usize
+    index_below((log + 1.5) * per_octave, count)
 }

@@ -160,43 +160,44 @@ impl StarBuilder {
         let star = &mut self.star;
         let closed = patches.open_edge(index) == CLOSED;
         let vertex = surface.corner_of.len() as u32;
+        let (faces, degree) = (patches.faces(index), star.ring.len());
 
-        for &f in patches.faces(index) {
+        for &f in faces {
             for v in surface.triangles[f as usize] {
                 surface.valence[v as usize] -= 1;
             }
         }
-        let degree = star.ring.len();
-        for (i, &v) in star.ring.iter().enumerate() {
-            // Edges − (faces − 1) diagonals + the new edge; an open ring loses the edge that closed it.
-            let is_end = !closed && (i == 0 || i == degree - 1) && degree > 2;
-            surface.valence[v as usize] += if patches.faces(index).is_empty() || is_end { 1 } else { 2 };
+        // Edges − (faces − 1) diagonals + the new edge; an open ring loses the edge that closed it.
+        let gained = if faces.is_empty() { 1 } else { 2 };
+        star.ring.iter().for_each(|&v| surface.valence[v as usize] += gained);
+        if !closed && degree > 2 {
+            [0, degree - 1].iter().for_each(|&end| surface.valence[star.ring[end] as usize] -= 1);
         }
 
         star.faces.clear();
-        star.faces.extend_from_slice(patches.faces(index));
-        while star.faces.len() < star.outer.len() {
-            star.faces.push(surface.triangles.len() as u32);
-            surface.triangles.push([0; 3]);
-            surface.opposite.extend([NO_CORNER; 3]);
-        }
-        for (i, &f) in star.faces.iter().enumerate() {
-            let (a, b) = (star.ring[i], star.ring[(i + 1) % degree]);
+        star.faces.extend_from_slice(faces);
+        let first_new = surface.triangles.len();
+        let num_new = star.outer.len() - faces.len();
+        star.faces.extend((first_new..first_new + num_new).map(|f| f as u32));
+        surface.triangles.resize(first_new + num_new, [0; 3]);
+        surface.opposite.resize(3 * (first_new + num_new), NO_CORNER);
+
+        let (first, last) = (star.faces[0], star.faces[star.faces.len() - 1]);
+        let (mut before, beyond_last) =
+            if closed { (3 * last, 3 * first + 1) } else { (NO_CORNER, NO_CORNER) };
+        for (i, (&f, &outer)) in star.faces.iter().zip(&star.outer).enumerate() {
+            let (a, b) = (star.ring[i], *star.ring.get(i + 1).unwrap_or(&star.ring[0]));
+            let after = star.faces.get(i + 1).map_or(beyond_last, |after| 3 * after + 1);
             surface.triangles[f as usize] = [a, b, vertex];
+            surface.opposite[3 * f as usize..][..3].copy_from_slice(&[after, before, outer]);
+            if outer != NO_CORNER {
+                surface.opposite[outer as usize] = 3 * f + 2;
+            }
             surface.corner_of[a as usize] = 3 * f;
             surface.corner_of[b as usize] = 3 * f + 1;
-            surface.opposite[3 * f as usize + 2] = NO_CORNER;
-            surface.link(3 * f + 2, star.outer[i]);
-            match star.faces.get(i + 1) {
-                Some(&after) => surface.link(3 * f, 3 * after + 1),
-                None if closed => surface.link(3 * f, 3 * star.faces[0] + 1),
-                None => surface.opposite[3 * f as usize] = NO_CORNER,
-            }
+            before = 3 * f;
         }
-        if !closed {
-            surface.opposite[3 * star.faces[0] as usize + 1] = NO_CORNER;
-        }
-        surface.corner_of.push(3 * star.faces[0] + 2);
+        surface.corner_of.push(3 * first + 2);
         surface.valence.push(degree as u32);
         Ok(star)
     }
@@ -213,14 +214,14 @@ impl StarBuilder {
             star.ring.extend([surface.vertex(prev(edges[0])), surface.vertex(next(edges[0]))]);
             star.outer.push(edges[0]);
         } else {
-            let degree = edges.len();
-            let first_edge = patches.first_edge(index);
-            for i in 0..degree {
-                let corner = edges[(first_edge + i) % degree];
-                star.ring.push(surface.vertex(next(corner)));
-                if i + 1 < degree || open_edge == CLOSED {
-                    star.outer.push(surface.across(corner));
-                }
+            let first_edge = patches.first_edge(index) % edges.len();
+            let (end, beginning) = edges.split_at(first_edge);
+            for half in [beginning, end] {
+                star.ring.extend(half.iter().map(|&corner| surface.vertex(next(corner))));
+                star.outer.extend(half.iter().map(|&corner| surface.across(corner)));
+            }
+            if open_edge != CLOSED {
+                star.outer.pop();
             }
         }
         for &v in &star.ring {

@@ -6,7 +6,7 @@ use super::patch::{Patches, Star};
 use super::work::Work;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::streams::stream;
-use crate::bitstream::tables::log2;
+use crate::bitstream::tables::{index_below, log2};
 use crate::lanes::Lanes;
 use crate::mesh::surface::NO_CORNER;
 
@@ -66,7 +66,7 @@ pub(crate) fn code_vertex<B: BitCoder>(
     let log_length = log2(length + 1.0);
     let class = |rough: i32| {
         let log_size = log_length + rough as f32 * (share * 0.125);
-        2 * ((log_size + 2.0).clamp(0.0, (CLASSES - 1) as f32) as usize)
+        2 * index_below(log_size + 2.0, CLASSES)
     };
     let symbols = [stream::SYMBOLS + class(rough[0]), stream::SYMBOLS + 1 + class(rough[1])];
     let [x, y, z, _] = normal.abs().0;

@@ -2,11 +2,12 @@
 //! [`ears`](crate::mesh::ears) would have closed it by the patch's own triangles
 //! (`format/SPEC.md`, section 7.2).
 
-use crate::mesh::ears::{Bytes, Hole, MAX_CORNERS, squared_distance};
+use crate::lanes::Cell;
+use crate::mesh::ears::{Bytes, Hole, IN_ORDER, MAX_CORNERS};
 
 /// The first triangle of a patch, counter-clockwise from the gate on.
 pub(super) struct Triangle {
-    pub(super) vertices: [u32; 3],
+    pub(super) cells: [Cell; 3],
     /// Edges at each corner, those of the triangle too.
     pub(super) valences: [u8; 3],
 }
@@ -14,9 +15,9 @@ pub(super) struct Triangle {
 impl Triangle {
     /// Whether it would fit together with the one over the edge that starts at corner `edge`.
     ///
-    /// As [`Polygon::fit`] of the four corners: the ears are the tip and the corner that faces the edge.
-    #[inline]
-    pub(super) fn fit_grown(&self, edge: usize, tip: u32, tip_valence: u8, positions: &[[i32; 3]]) -> Fit {
+    /// As [`Polygon::fit_grown`] of the four corners: the ears are the tip and the corner that faces the edge.
+    #[inline(always)]
+    pub(super) fn fit_grown(&self, edge: usize, tip: Cell, tip_valence: u8) -> Fit {
         let (start, end, apex) = (edge, (edge + 1) % 3, (edge + 2) % 3);
         // Without the edges inside: an ear has one triangle, the others have two.
         let valence = |corner: usize, triangles: i32| i32::from(self.valences[corner]) - triangles;
@@ -25,9 +26,8 @@ impl Triangle {
         if of_ears != of_others {
             return if of_ears < of_others { Fit::Is } else { Fit::Not };
         }
-        let position = |corner: usize| positions[self.vertices[corner] as usize];
-        let cut = squared_distance(position(start), position(end));
-        let other = squared_distance(position(apex), positions[tip as usize]);
+        let cut = self.cells[start].squared_distance(self.cells[end]);
+        let other = self.cells[apex].squared_distance(tip);
         // The first of least valence from the gate on, the tip standing behind the edge's start.
         let first_is_ear = || {
             let mut from_gate = [(b, false); 4];
@@ -40,10 +40,19 @@ impl Triangle {
     }
 }
 
+/// The polygon of a patch.
+#[derive(Default)]
+pub(super) struct Polygon {
+    /// Where the corners lie, in the order in which they came.
+    cells: [Cell; MAX_CORNERS],
+    outline: Outline,
+}
+
 /// Counter-clockwise from the gate on.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Polygon {
-    vertices: [u32; MAX_CORNERS],
+struct Outline {
+    /// When each corner came.
+    names: Bytes,
     /// Edges at each corner, those inside the patch too, and [`SPARE`] more.
     valences: Bytes,
     /// Triangles of the patch at each corner.
@@ -58,84 +67,101 @@ pub(super) struct Polygon {
 const SPARE: u8 = 8;
 
 impl Polygon {
-    /// A triangle; its edges before corner `cursor` stay.
-    #[inline]
-    pub(super) fn of_triangle(triangle: &Triangle, cursor: usize) -> Self {
-        let mut polygon = Self { triangles: Bytes::ones(3), len: 3, cursor, ..Self::default() };
-        polygon.vertices[..3].copy_from_slice(&triangle.vertices);
+    /// Begins with a triangle; its edges before corner `cursor` stay.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, triangle: &Triangle, cursor: usize) {
+        self.cells[..3].copy_from_slice(&triangle.cells);
+        let mut valences = Bytes::default();
         for (i, valence) in triangle.valences.into_iter().enumerate() {
-            polygon.valences.add(i, valence + SPARE);
+            valences.add(i, valence + SPARE);
         }
-        polygon
+        self.outline = Outline { names: IN_ORDER, valences, triangles: Bytes::ones(3), len: 3, cursor };
     }
 
     /// The edge that is looked at stays.
-    #[inline]
+    #[inline(always)]
     pub(super) fn pass(&mut self) {
-        self.cursor += 1;
+        self.outline.cursor += 1;
     }
 
-    /// The polygon with the triangle over the edge that is looked at.
-    #[inline]
-    pub(super) fn grown(&self, tip: u32, valence: u8) -> Self {
-        let len = self.len;
+    /// Takes in the triangle over the edge that is looked at.
+    #[inline(always)]
+    pub(super) fn grow(&mut self, tip: Cell, valence: u8) {
+        let grown = self.outline.grown(valence);
+        self.cells[self.outline.len % MAX_CORNERS] = tip;
+        self.outline = grown;
+    }
+
+    /// Whether the rule would make just the triangles that it would have then.
+    #[inline(always)]
+    pub(super) fn fit_grown(&mut self, tip: Cell, valence: u8) -> Fit {
+        let grown = self.outline.grown(valence);
+        self.cells[self.outline.len % MAX_CORNERS] = tip;
+        self.fit(&grown)
+    }
+
+    #[inline(always)]
+    fn fit(&self, outline: &Outline) -> Fit {
+        let &Outline { names, valences, triangles: mut left, len, .. } = outline;
+        if len == 0 {
+            return Fit::Unknown;
+        }
+        let mut hole = Hole::new(names, valences.minus(left), len);
+        while hole.len() > 4 {
+            let (least, ears) = (hole.of_least_valence(), left.corners_with(1));
+            let ear = if least.has_some_of(ears) {
+                hole.shortest(least, |i, j| self.squared_distance(i, j), |_| true)
+            } else {
+                None
+            };
+            let Some(ear) = ear.filter(|ear| left.get(ear.place) == 1) else { return Fit::Not };
+            let [before, after] = hole.beside(ear.place);
+            left = left.minus(Bytes::at(before)).minus(Bytes::at(after));
+            left.remove(ear.place);
+            hole.cut(ear);
+        }
+        self.fit_of_quad(&hole, left)
+    }
+
+    /// The same for two triangles, which is asked most: their ears are two opposite corners.
+    #[inline(always)]
+    fn fit_of_quad(&self, hole: &Hole, left: Bytes) -> Fit {
+        let ear = usize::from(left.get(0) != 1);
+        let [(a, of_a), (b, of_b), (c, of_c), (d, of_d)] = [0, 1, 2, 3].map(|i| hole.corner((ear + i) & 3));
+        let (of_ears, of_others) = (of_a.min(of_c), of_b.min(of_d));
+        if of_ears != of_others {
+            return if of_ears < of_others { Fit::Is } else { Fit::Not };
+        }
+        let (cut, other) = (self.squared_distance(b, d), self.squared_distance(a, c));
+        let first_is_ear = || (0..4).find(|&i| hole.corner(i).1 == of_ears).is_some_and(|i| i & 1 == ear);
+        if cut < other || cut == other && first_is_ear() { Fit::Is } else { Fit::Not }
+    }
+
+    /// Between two corners by when they came.
+    #[inline(always)]
+    fn squared_distance(&self, i: usize, j: usize) -> f32 {
+        self.cells[i % MAX_CORNERS].squared_distance(self.cells[j % MAX_CORNERS])
+    }
+}
+
+impl Outline {
+    /// With the triangle over the edge that is looked at.
+    #[inline(always)]
+    fn grown(&self, valence: u8) -> Self {
+        let &Self { mut names, mut valences, mut triangles, len, cursor } = self;
         if len == 0 || len == MAX_CORNERS {
             return Self::default();
         }
-        let cursor = self.cursor;
         let at = cursor + 1;
-        let vertices = std::array::from_fn(|i| match i {
-            i if i < at => self.vertices[i],
-            i if i == at => tip,
-            i => self.vertices[i - 1],
-        });
-        let (mut valences, mut triangles) = (self.valences, self.triangles);
+        names.insert(at);
+        names.add(at, len as u8);
         valences.insert(at);
         valences.add(at, valence + SPARE);
         triangles.insert(at);
         triangles.add(cursor, 1);
         triangles.add(at, 1);
         triangles.add(if at == len { 0 } else { at + 1 }, 1);
-        Self { vertices, valences, triangles, len: len + 1, cursor }
-    }
-
-    /// Whether the rule makes just these triangles.
-    #[inline]
-    pub(super) fn fit(&self, positions: &[[i32; 3]]) -> Fit {
-        if self.len == 0 {
-            return Fit::Unknown;
-        }
-        if self.len == 4 {
-            return self.fit_of_quad(positions);
-        }
-        let position = |corner: usize| positions[self.vertices[corner] as usize];
-        let mut left = self.triangles;
-        let mut hole = Hole::new(self.valences.minus(left), self.len);
-        while hole.len() > 3 {
-            let Some(ear) = hole.next_ear(position, |_| true) else { break };
-            if left.get(ear.corner) != 1 {
-                return Fit::Not;
-            }
-            left = left.minus(Bytes::at(ear.before)).minus(Bytes::at(ear.after));
-            hole.cut(ear);
-        }
-        Fit::Is
-    }
-
-    /// The same for two triangles, which is asked most: their ears are two opposite corners.
-    #[inline]
-    fn fit_of_quad(&self, positions: &[[i32; 3]]) -> Fit {
-        let ear = usize::from(self.triangles.get(0) != 1);
-        let outside = self.valences.minus(self.triangles);
-        let [a, b, c, d] = std::array::from_fn(|i| outside.get((ear + i) & 3));
-        let (of_ears, of_others) = (a.min(c), b.min(d));
-        if of_ears != of_others {
-            return if of_ears < of_others { Fit::Is } else { Fit::Not };
-        }
-        let [pa, pb, pc, pd] = std::array::from_fn(|i| positions[self.vertices[(ear + i) & 3] as usize]);
-        let (cut, other) = (squared_distance(pb, pd), squared_distance(pa, pc));
-        let first_is_ear = || (0..4).find(|&i| outside.get(i) == of_ears).is_some_and(|i| i & 1 == ear);
-        if cut < other || cut == other && first_is_ear() { Fit::Is } else { Fit::Not }
+        Self { names, valences, triangles, len: len + 1, cursor }
     }
 }
 
@@ -164,18 +190,22 @@ mod tests {
         };
         let mut fits = 0;
         for _ in 0..2000 {
-            let positions: [[i32; 3]; 4] = std::array::from_fn(|_| std::array::from_fn(|_| random(3) as i32));
+            let cells: [Cell; 4] =
+                std::array::from_fn(|_| Cell::new(std::array::from_fn(|_| random(3) as i32)));
             let valences: [u8; 4] = std::array::from_fn(|_| 4 + random(3) as u8);
-            let start = Triangle { vertices: [0, 1, 2], valences: [valences[0], valences[1], valences[2]] };
+            let [a, b, c, tip] = cells;
+            let start = Triangle { cells: [a, b, c], valences: [valences[0], valences[1], valences[2]] };
             let edge = random(3) as usize;
-            let quad = Polygon::of_triangle(&start, edge).grown(3, valences[3]);
+            let mut quad = Polygon::default();
+            quad.begin(&start, edge);
+            let fit = quad.fit_grown(tip, valences[3]);
 
-            let position = |corner: usize| positions[quad.vertices[corner] as usize];
-            let hole = Hole::new(quad.valences.minus(quad.triangles), 4);
-            let ear = hole.next_ear(position, |_| true).expect("there are four");
-            let is_own = quad.triangles.get(ear.corner) == 1;
-            assert_eq!(quad.fit(&positions) == Fit::Is, is_own);
-            assert_eq!(start.fit_grown(edge, 3, valences[3], &positions) == Fit::Is, is_own);
+            let Outline { names, valences: all, triangles, .. } = quad.outline.grown(valences[3]);
+            let hole = Hole::new(names, all.minus(triangles), 4);
+            let ear = hole.next_ear(|i, j| quad.squared_distance(i, j), |_| true).expect("there are four");
+            let is_own = triangles.get(ear.place) == 1;
+            assert_eq!(fit == Fit::Is, is_own);
+            assert_eq!(start.fit_grown(edge, tip, valences[3]) == Fit::Is, is_own);
             fits += u32::from(is_own);
         }
         assert!((200..1800).contains(&fits), "{fits}");

@@ -6,7 +6,7 @@ use super::surroundings::{NUM_CLASSES, Surroundings};
 use super::work::Work;
 use crate::bitstream::mixer::MixedBit;
 use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::tables::Tables;
+use crate::bitstream::tables::{Tables, index_below};
 
 /// Buckets of the centre's distance from the boundary between the halves of a cell.
 const OFFSETS: usize = 32;
@@ -70,9 +70,7 @@ pub(crate) fn code_some<B: BitCoder>(
             let above_middle = mixture.above(tables, 0.0);
             let lower = mixture.above(tables, -1.0) - above_middle;
             let upper = above_middle - mixture.above(tables, 1.0);
-            let bucket = |centre: f32| {
-                (centre * OFFSETS_PER_STEP + 0.5 * OFFSETS as f32).clamp(0.0, (OFFSETS - 1) as f32) as usize
-            };
+            let bucket = |centre: f32| index_below(centre * OFFSETS_PER_STEP + 0.5 * OFFSETS as f32, OFFSETS);
             let [first, second, third, _] = mixture.centre.0.map(bucket);
             let best = bucket(mixture.centre.0[guess.best]);
             let contexts = [
@@ -84,7 +82,7 @@ pub(crate) fn code_some<B: BitCoder>(
             let p_upper = (upper + 0.5 * LEAST_MASS) / (lower + upper + LEAST_MASS);
             let wanted = target.is_some_and(|t| t[v][guess.axis] > low);
             let direct = [tables.stretch_real(p_upper)];
-            let bit = models.bit.code(coder, tables, contexts, &direct, kind, wanted);
+            let bit = models.bit.code(coder, tables, contexts, direct, kind, wanted);
             let value = low + i32::from(bit);
             mesh.positions[v][guess.axis] = value;
             vertex.settle(&mut models.guesses, &guess, kind, value);

@@ -6,7 +6,8 @@ use super::collapse::is_tetrahedral;
 use super::geometry::{area_vector, is_same_side};
 use super::seams::Demand;
 use super::shrinking::{ShrinkingSurface, Star};
-use crate::mesh::ears::{Bytes, Ear, Hole, MAX_CORNERS, MAX_VALENCE};
+use crate::lanes::Cell;
+use crate::mesh::ears::{Bytes, Ear, Hole, IN_ORDER, MAX_CORNERS, MAX_VALENCE};
 
 /// Scratch space of the rule.
 #[derive(Default)]
@@ -46,11 +47,12 @@ impl EarClipper {
             let closes = !star.is_closed() && (p, n) == (degree - 1, 0);
             keeps_side && demand.allows([p, c, n]) && (count == 3 || closes || !has_edge(p, n))
         };
-        let mut hole = Hole::new(valences(surface, star), degree);
+        let mut hole = Hole::new(IN_ORDER, valences(surface, star), degree);
         self.ears.clear();
         while hole.len() > 2 {
             let count = hole.len();
-            let ear = hole.next_ear(cell, |ear| allowed(ear, count))?;
+            let length = |i: usize, j: usize| Cell::new(cell(i)).squared_distance(Cell::new(cell(j)));
+            let ear = hole.next_ear(length, |ear| allowed(ear, count))?;
             self.ears.push(ear.corner);
             hole.cut(ear);
         }

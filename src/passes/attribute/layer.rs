@@ -567,7 +567,7 @@ impl Layer {
                 k * 16 + (desk.around.ring.len().min(7) * 2 + usize::from(desk.around.is_closed)),
             ];
             let is_it = wanted.is(&self.rows, row);
-            let is_it = self.models.repeated.code(coder, Tables::get(), contexts, &[], set, is_it);
+            let is_it = self.models.repeated.code(coder, Tables::get(), contexts, [], set, is_it);
             if is_it {
                 self.history = self.history << 1 | 1;
                 return Some(row);
