@@ -52,7 +52,7 @@ PARTS = {
     "Densities: experts weighed by how they did": [(GUESS, r"TRUST_RATE: f32 = .*;", "TRUST_RATE: f32 = 0.0;")],
     "Densities: scales learnt on the way": [(GUESS, r"SCALE_RATE: f32 = .*;", "SCALE_RATE: f32 = 0.0;")],
     "Residuals: the density as an input of the mixers": [
-        ("src/bitstream/residual.rs", r"&\[tables\.stretch_real\([^\]]*\)\]", "&[]"),
+        ("src/bitstream/residual.rs", r"\[tables\.stretch_real\([^\]]*\)\]", "[]"),
     ],
     "Residuals: contexts of the neighbourhood beside it": [
         ("src/passes/coordinates.rs", r"contexts: \[\n[^\]]*\]", "contexts: [0, 0]"),
@@ -84,7 +84,7 @@ PARTS = {
         (PARTITION, r"chosen, thinning\.tolerance, memory", "chosen, f64::INFINITY, memory"),
     ],
     "Compensation: coarse meshes shown where they shrink less": [
-        ("src/encoder/write.rs", r"let compensation = if is_last ", "let compensation = if is_last || true "),
+        ("src/encoder/write.rs", r"let compensation = if is_last \{", "let compensation = if is_last || true {"),
     ],
 }
 

@@ -41,7 +41,7 @@ impl Grid {
 
     /// Half the side of a cell of the full grid.
     pub(crate) fn half_step(&self) -> f64 {
-        self.side / f64::from((1_u32 << self.precision) - 1) * 0.5
+        self.step(self.precision) * 0.5
     }
 
     /// The cell of the full grid that is closest, halves rounded up.

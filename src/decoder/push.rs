@@ -345,11 +345,12 @@ impl Decoder {
             self.running = Some((running, chunk));
             return Ok(Step::Unfinished);
         };
-        let was_compensated = self.mesh().is_some_and(|mesh| mesh.is_compensated());
+        let before = self.last_pass().map_or(Compensation::NONE, |last| self.compensation_after(last));
+        let compensations = [before, self.compensation_after(&pass)];
+        let is_shown_elsewhere = compensations.iter().any(|&compensation| compensation != Compensation::NONE);
         self.done += 1;
         self.await_companions(&pass, patches, changes.first_vertex as usize);
-        let is_compensated = self.mesh().is_some_and(|mesh| mesh.is_compensated());
-        let first_vertex = if was_compensated || is_compensated { 0 } else { changes.first_vertex };
+        let first_vertex = if is_shown_elsewhere { 0 } else { changes.first_vertex };
         Ok(Step::Finished(Update {
             pass,
             vertices: first_vertex..pass.vertices,
@@ -446,6 +447,10 @@ impl Decoder {
         Ok(())
     }
 
+    fn compensation_after(&self, pass: &PassInfo) -> Compensation {
+        if self.compensate { pass.compensation } else { Compensation::NONE }
+    }
+
     /// The pass that was done last.
     fn last_pass(&self) -> Option<&PassInfo> {
         self.info.as_ref()?.passes.get(self.done.checked_sub(1)?)
@@ -472,7 +477,7 @@ impl Decoder {
             Some((running, _)) => running.mesh_before(mesh),
             None => (&mesh.positions[..], &mesh.surface.triangles[..]),
         };
-        let compensation = if self.compensate { pass.compensation } else { Compensation::NONE };
+        let compensation = self.compensation_after(pass);
         let (precision, level) = (pass.precision, pass.level);
         let (grid, extras) = (&info.grid, &self.extras);
         Some(LevelMesh { cells, triangles, grid, precision, level, compensation, extras })

@@ -27,11 +27,15 @@ pub(super) struct Point {
     vertex: u32,
 }
 
+fn place(cells: &[[i32; 3]], vertex: u32) -> DVec3 {
+    DVec3::from_array(cells[vertex as usize].map(f64::from))
+}
+
 /// Points evenly over the area of the surface.
 pub(super) fn points(surface: &Surface, cells: &[[i32; 3]]) -> Vec<Point> {
-    let corners = |t: &[u32; 3]| t.map(|v| DVec3::from_array(cells[v as usize].map(f64::from)));
+    // Each area twice rather than an array of them: there may be many.
     let area = |t: &[u32; 3]| {
-        let [a, b, c] = corners(t);
+        let [a, b, c] = t.map(|v| place(cells, v));
         (b - a).cross(c - a).length()
     };
     let total: f64 = surface.triangles.iter().map(area).sum();
@@ -41,7 +45,7 @@ pub(super) fn points(surface: &Surface, cells: &[[i32; 3]]) -> Vec<Point> {
     for triangle in &surface.triangles {
         sum += area(triangle);
         while sum >= share && points.len() < NUM_POINTS {
-            let [a, b, c] = corners(triangle);
+            let [a, b, c] = triangle.map(|v| place(cells, v));
             points.push(Point { at: (a + b + c) / 3.0, vertex: triangle[points.len() % 3] });
             sum -= share;
         }
@@ -74,8 +78,7 @@ impl<'a> Fitter<'a> {
             if !is_in_chain[removed.vertex as usize] {
                 continue;
             }
-            let place = |v: u32| DVec3::from_array(cells[v as usize].map(f64::from));
-            let distance = |v: &u32| place(*v).distance_squared(place(removed.vertex));
+            let distance = |&v: &u32| place(cells, v).distance_squared(place(cells, removed.vertex));
             let nearest = removed.ring.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
             let nearest = nearest.unwrap_or(removed.vertex);
             is_in_chain.set(nearest as usize, true);
@@ -135,10 +138,12 @@ impl Bends<'_> {
         let surface = &self.mesh.surface;
         let is_closed = surface.fan(surface.corner_of[vertex as usize], &mut self.fan);
         let ring: Vec<u32> = self.fan.iter().map(|&corner| surface.vertex(next(corner))).collect();
-        let sum =
-            |bends: &mut Self| ring.iter().map(|&v| bends.of(v).height).sum::<f64>() / ring.len() as f64;
-        let around = if is_closed { sum(self) } else { 0.0 };
-        (self.of(vertex), around)
+        let own = self.of(vertex);
+        if !is_closed {
+            return (own, 0.0);
+        }
+        let sum: f64 = ring.iter().map(|&v| self.of(v).height).sum();
+        (own, sum / ring.len() as f64)
     }
 
     fn of(&mut self, vertex: u32) -> Bend {
@@ -213,34 +218,28 @@ struct Closest {
 
 /// The point of the triangles around `vertex` that is closest to `at`, or of those around the vertices to which it leads.
 fn closest(mesh: &GridMesh, mut vertex: u32, at: DVec3) -> Closest {
-    let mut best: Option<Closest> = None;
+    let (triangle, shares, normal) = ([vertex; 3], [0.0; 3], DVec3::ZERO);
+    let mut best = Closest { triangle, shares, normal, closest: at, distance: f64::INFINITY };
     let mut fan = Vec::new();
     for _ in 0..MAX_STEPS {
         mesh.surface.fan(mesh.surface.corner_of[vertex as usize], &mut fan);
         for corner in &fan {
             let found = closest_of(mesh, mesh.surface.triangles[*corner as usize / 3], at);
-            if best.as_ref().is_none_or(|best| found.distance < best.distance) {
-                best = Some(found);
+            if found.distance < best.distance {
+                best = found;
             }
         }
-        let Some(best) = &best else { break };
         let nearest = (0..3).max_by(|&i, &j| best.shares[i].total_cmp(&best.shares[j])).unwrap_or(0);
         if best.triangle[nearest] == vertex {
             break;
         }
         vertex = best.triangle[nearest];
     }
-    best.unwrap_or(Closest {
-        triangle: [vertex; 3],
-        shares: [0.0; 3],
-        normal: DVec3::ZERO,
-        closest: at,
-        distance: 0.0,
-    })
+    best
 }
 
 fn closest_of(mesh: &GridMesh, triangle: [u32; 3], at: DVec3) -> Closest {
-    let corners = triangle.map(|v| DVec3::from_array(mesh.positions[v as usize].map(f64::from)));
+    let corners = triangle.map(|v| place(&mesh.positions, v));
     let shares = closest_shares(at, &corners);
     let [a, b, c] = corners;
     let closest = a * shares[0] + b * shares[1] + c * shares[2];

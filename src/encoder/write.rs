@@ -252,8 +252,11 @@ impl<'a> PassWriter<'a> {
         let glue = self.glue_of_new_vertices(&names.vertex_source);
         let hidden = self.full_precision - self.precision;
         let is_last = hidden == 0 && self.mesh.surface.triangles.len() == self.num_faces;
-        let mut fit = || self.fitter.fit(&self.mesh, &names.vertex_source, hidden);
-        let compensation = if is_last { Compensation::NONE } else { fit() };
+        let compensation = if is_last {
+            Compensation::NONE
+        } else {
+            self.fitter.fit(&self.mesh, &names.vertex_source, hidden)
+        };
         self.passes.push(WrittenPass { row, payload, glue, compensation });
     }
 

@@ -4,9 +4,9 @@
 
 use crate::bitstream::compensation::Compensation;
 
-/// What the triangles around a vertex add up to. All sums are exact up to coordinates of 25 bits.
+/// What the triangles around a vertex add up to: exactly for coordinates of up to 22 bits and up to 256 triangles.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Ring {
+struct Ring {
     /// Neighbours seen from the vertex, each twice.
     sum: [f64; 3],
     normal: [f64; 3],
