@@ -58,18 +58,12 @@ pub(crate) struct Descent<'a> {
 
 impl<'a> Descent<'a> {
     /// Goes down from `surface`; the vertices `glued` always stay.
-    pub(crate) fn new(
-        surface: Surface,
-        geometry: Geometry<'a>,
-        mean_edge: f64,
-        settings: Settings,
-        glued: BitVec,
-    ) -> Self {
+    pub(crate) fn new(surface: Surface, geometry: Geometry<'a>, settings: Settings, glued: BitVec) -> Self {
         let memory = ErrorMemory::new(&surface, geometry.positions);
         let anchors = Anchors::new(&surface, glued);
         let shrinking = ShrinkingSurface::new(surface);
         let level = Level::collect(&shrinking);
-        let (features, depth, is_over, seams) = (None, 0, false, Seams::default());
+        let (features, mean_edge, depth, is_over, seams) = (None, 0.0, 0, false, Seams::default());
         Self {
             settings,
             geometry,
@@ -83,6 +77,12 @@ impl<'a> Descent<'a> {
             depth,
             is_over,
         }
+    }
+
+    /// The same where the descriptor measures by l̄ of the finest level, in the units of the geometry. It must be told
+    /// before the first level.
+    pub(crate) fn with_mean_edge(self, mean_edge: f64) -> Self {
+        Self { mean_edge, ..self }
     }
 
     /// The same with attributes that the descriptor sees, which must be one that can.
@@ -195,7 +195,7 @@ impl Iterator for Descent<'_> {
             &mut self.memory,
             &self.anchors,
             &mut self.seams,
-            &self.level.vertices,
+            &self.level,
             ranked,
         );
         if record.len() == 0 {
@@ -207,7 +207,8 @@ impl Iterator for Descent<'_> {
             self.seams.loosen();
             return self.next();
         }
-        let finer = std::mem::replace(&mut self.level, Level::collect(&self.shrinking));
+        let coarser = self.level.coarser(&self.shrinking);
+        let finer = std::mem::replace(&mut self.level, coarser);
         let is_little = (record.len() as f64) < LEAST_SHARE * finer.vertices.len() as f64;
         let num_vertices = self.level.vertices.len();
         if is_little && self.seams.hold() && !is_coarse(optimize, num_vertices, &self.shrinking) {

@@ -1,6 +1,8 @@
 //! One level of a surface that shrinks, as a mesh without gaps.
 
 use crate::TriMesh;
+use crate::mesh::Surface;
+use crate::parallel::fill;
 use crate::simplify::ShrinkingSurface;
 use crate::simplify::shrinking::FREE;
 use rayon::prelude::*;
@@ -16,24 +18,40 @@ pub(crate) struct Level {
 }
 
 impl Level {
+    /// What is there of a surface.
     pub(crate) fn collect(shrinking: &ShrinkingSurface) -> Self {
+        let Surface { corner_of, triangles, .. } = &shrinking.surface;
+        Self::among(shrinking, 0..corner_of.len() as u32, 0..triangles.len() as u32)
+    }
+
+    /// What is left of this level.
+    pub(crate) fn coarser(&self, shrinking: &ShrinkingSurface) -> Self {
+        Self::among(shrinking, self.vertices.iter().copied(), self.faces.iter().copied())
+    }
+
+    /// What is there among these vertices and slots, which ascend.
+    fn among(
+        shrinking: &ShrinkingSurface,
+        vertices: impl Iterator<Item = u32> + Send,
+        slots: impl Iterator<Item = u32> + Send,
+    ) -> Self {
         let surface = &shrinking.surface;
-        let mut name = vec![u32::MAX; surface.corner_of.len()];
-        let mut vertices = Vec::with_capacity(shrinking.num_vertices());
-        for (v, n) in name.iter_mut().enumerate() {
-            if shrinking.contains(v as u32) {
-                *n = vertices.len() as u32;
-                vertices.push(v as u32);
-            }
-        }
-        let mut faces = Vec::with_capacity(shrinking.num_faces());
-        let mut triangles = Vec::with_capacity(shrinking.num_faces());
-        for (f, t) in surface.triangles.iter().enumerate() {
-            if *t != FREE {
-                faces.push(f as u32);
-                triangles.push(t.map(|v| name[v as usize]));
-            }
-        }
+        let name_vertices = || {
+            let mut left = Vec::with_capacity(shrinking.num_vertices());
+            left.extend(vertices.filter(|&v| shrinking.contains(v)));
+            let mut name = vec![u32::MAX; surface.corner_of.len()];
+            left.iter().zip(0..).for_each(|(&v, i)| name[v as usize] = i);
+            (name, left)
+        };
+        let find_faces = || {
+            let mut left = Vec::with_capacity(shrinking.num_faces());
+            left.extend(slots.filter(|&slot| surface.triangles[slot as usize] != FREE));
+            left
+        };
+        let ((name, vertices), faces) = rayon::join(name_vertices, find_faces);
+        let mut triangles = vec![FREE; faces.len()];
+        let named = |i: usize| surface.triangles[faces[i] as usize].map(|v| name[v as usize]);
+        fill(&mut triangles, || (), |(), i| named(i));
         Self { vertices, faces, triangles }
     }
 

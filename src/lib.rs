@@ -30,6 +30,7 @@ pub mod metrics;
 #[cfg(feature = "encoder")]
 mod morton;
 
+mod parallel;
 #[cfg(feature = "encoder")]
 mod partition;
 mod passes;

@@ -1,6 +1,7 @@
 //! Odd and even: which vertices of a level are removed (Algorithm 1 of the paper), given one score
 //! per vertex.
 
+use crate::levels::Level;
 use crate::simplify::canonical::{Anchors, patch_order};
 use crate::simplify::collapse::CollapseTest;
 use crate::simplify::hole::HoleFiller;
@@ -50,7 +51,7 @@ pub(crate) struct Geometry<'a> {
     pub(crate) positions: &'a [[f64; 3]],
 }
 
-/// Removes one level of odd vertices. `vertices` are those of the level; `ranked` is what says in which order or
+/// Removes one level of odd vertices. `level` is what there is; `ranked` is what says in which order or
 /// which of them go.
 #[expect(clippy::too_many_arguments, reason = "what a level is, and what is kept from one to the next")]
 pub(crate) fn remove_level(
@@ -61,9 +62,10 @@ pub(crate) fn remove_level(
     memory: &mut ErrorMemory,
     anchors: &Anchors,
     seams: &mut Seams,
-    vertices: &[u32],
+    level: &Level,
     ranked: Ranked,
 ) -> LevelRecord {
+    let vertices = &level.vertices[..];
     match ranked {
         Ranked::ByScore(scores) => {
             let mut order = by_score(vertices, &scores);
@@ -71,7 +73,6 @@ pub(crate) fn remove_level(
             remove_in_order(surface, geometry, &order, Some(memory), seams)
         }
         Ranked::BySaliency { saliency, rings } => {
-            surface.forget(&rings, vertices);
             let thinning = Thinning::of_level(optimize, vertices.len(), surface);
             let max_valence = max_valence.unwrap_or(thinning.max_valence);
             let mut free = saliency.least();
@@ -79,10 +80,20 @@ pub(crate) fn remove_level(
                 rings.valence(place) <= max_valence as usize && !anchors.contain(vertices[place as usize])
             });
             leave_seams(optimize, surface, seams, vertices, &mut free);
-            let chosen = closely_packed(&rings, &free).into_iter().map(|place| vertices[place as usize]);
-            let chosen = chosen.collect();
+            let ((), chosen) =
+                rayon::join(|| surface.forget(&rings, vertices), || closely_packed(&rings, &free));
+            let chosen = chosen.into_iter().map(|place| vertices[place as usize]).collect();
             drop((saliency, rings));
-            remove_as_decoded(surface, geometry, chosen, thinning.tolerance, memory, anchors, seams)
+            remove_as_decoded(
+                surface,
+                geometry,
+                &level.faces,
+                chosen,
+                thinning.tolerance,
+                memory,
+                anchors,
+                seams,
+            )
         }
     }
 }
@@ -131,9 +142,11 @@ pub(crate) fn remove_in_order(
 /// Removes the vertices of `chosen`, none next to another, in the reverse of the order in which a decoder
 /// brings them back: the ears of the boundary last. Those that cannot go stay, which costs some bits where
 /// the order then differs.
+#[expect(clippy::too_many_arguments, reason = "as above")]
 fn remove_as_decoded(
     surface: &mut ShrinkingSurface,
     geometry: Geometry,
+    faces: &[u32],
     mut chosen: Vec<u32>,
     tolerance: f64,
     memory: &mut ErrorMemory,
@@ -146,7 +159,7 @@ fn remove_as_decoded(
     chosen.iter().for_each(|&v| odd.set(v as usize, true));
     chosen.sort_unstable();
     let (order, outlook) = rayon::join(
-        || patch_order(surface, &odd, anchors),
+        || patch_order(surface, faces, &odd, anchors),
         || Outlook::new(surface, grid, positions, memory, &chosen, see_fans),
     );
     let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;

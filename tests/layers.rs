@@ -5,14 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 24] = [
+const LAYERS: [(&str, &[&str]); 25] = [
     ("error", &[]),
     ("limits", &["error"]),
     ("lanes", &[]),
     ("morton", &[]),
+    ("parallel", &[]),
     ("profile", &[]),
     ("bitstream", &["lanes"]),
-    ("mesh", &["lanes"]),
+    ("mesh", &["lanes", "parallel"]),
     ("scene", &["bitstream", "mesh"]),
     ("io", &["mesh"]),
     ("metrics", &["mesh"]),
@@ -20,9 +21,9 @@ const LAYERS: [(&str, &[&str]); 24] = [
     ("descriptors", &["mesh", "morton"]),
     ("lifting", &["lanes"]),
     ("simplify", &["lanes", "mesh"]),
-    ("levels", &["mesh", "simplify"]),
+    ("levels", &["mesh", "parallel", "simplify"]),
     ("thinning", &["simplify"]),
-    ("partition", &["mesh", "simplify", "thinning"]),
+    ("partition", &["levels", "mesh", "simplify", "thinning"]),
     ("descent", &["descriptors", "levels", "mesh", "partition", "simplify", "thinning"]),
     ("passes", &["bitstream", "lanes", "lifting", "mesh"]),
     ("decoder", &["bitstream", "error", "limits", "mesh", "passes", "profile", "scene"]),

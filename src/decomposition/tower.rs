@@ -77,7 +77,7 @@ impl Tower {
             max_valence: None,
         };
         let none: BitVec = BitVec::repeat(false, num_vertices);
-        let mut descent = Descent::new(surface, geometry, mean_edge, settings, none);
+        let mut descent = Descent::new(surface, geometry, settings, none).with_mean_edge(mean_edge);
         // Finest first, in the numbering of the surface.
         let mut levels: Vec<Level> = descent.by_ref().map(|(finer, _)| finer).collect();
         levels.push(descent.into_level());

@@ -1,6 +1,7 @@
 //! A mesh made ready for the descriptors: adjacency, scaled positions, vertex normals.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::adjacency::Adjacency;
 use super::locality::morton_order;
@@ -68,10 +69,10 @@ impl Surface {
         for (i, &v) in mesh_vertices.iter().enumerate() {
             surface_vertices[v as usize] = i as u32;
         }
-        for t in &mut triangles {
-            *t = t.map(|v| surface_vertices[v as usize]);
+        if !in_order {
+            triangles.par_iter_mut().for_each(|t| *t = t.map(|v| surface_vertices[v as usize]));
         }
-        let mut vertices: Vec<Vertex> = (mesh_vertices.iter())
+        let mut vertices: Vec<Vertex> = (mesh_vertices.par_iter())
             .map(|&v| Vertex { position: positions[v as usize], normal: DVec3::ZERO })
             .collect();
         // What follows takes the most memory.
@@ -222,7 +223,7 @@ fn bounding_box(mesh: &TriMesh, triangles: &[[u32; 3]]) -> Option<(DVec3, DVec3)
 }
 
 fn scaled_positions(mesh: &TriMesh, shift: i32) -> Vec<DVec3> {
-    mesh.positions().iter().map(|&p| scaled(DVec3::from_array(p), shift)).collect()
+    mesh.positions().par_iter().map(|&p| scaled(DVec3::from_array(p), shift)).collect()
 }
 
 fn scaled(p: DVec3, shift: i32) -> DVec3 {

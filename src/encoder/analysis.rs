@@ -55,14 +55,15 @@ pub(super) fn analyse(
     // Near 1, so that squares neither overflow nor vanish.
     let steps_per_unit = f64::from(1_u32 << options.quantization);
     let positions: Vec<[f64; 3]> = cells.iter().map(|c| c.map(|c| f64::from(c) / steps_per_unit)).collect();
-    let mesh = TriMesh::from_valid_parts(positions, surface.triangles.clone());
-    let mean_edge = descriptors::mean_edge_length(&mesh);
-    let (positions, _) = mesh.into_parts();
+    let mesh = TriMesh::from_valid_parts(positions.clone(), surface.triangles.clone());
     let geometry = Geometry { grid: cells, positions: &positions };
     let Companions { glued, seams, features } = companions;
     let settings = settings(options, attempt);
-    let descent = Descent::new(surface, geometry, mean_edge, settings, glued);
-    let mut descent = descent.with_seams(seams).with_features(features);
+    let (mean_edge, descent) = rayon::join(
+        move || descriptors::mean_edge_length(&mesh),
+        || Descent::new(surface, geometry, settings, glued),
+    );
+    let mut descent = descent.with_mean_edge(mean_edge).with_seams(seams).with_features(features);
     let squared_step = steps_per_unit.powi(2);
     let mut records = Vec::new();
     let mut mean_edges = vec![descent.level().mean_edge(cells)];

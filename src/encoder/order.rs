@@ -39,7 +39,7 @@ pub(super) fn order<'a>(
     let mut vertex_source: Vec<u32> = keys.iter().map(|&key| key as u32).collect();
     let mut place = vec![0_u32; mesh.num_vertices()];
     vertex_source.iter().zip(0..).for_each(|(&v, i)| place[v as usize] = i);
-    usable.iter_mut().flat_map(|(_, t)| t).for_each(|v| *v = place[*v as usize]);
+    usable.par_iter_mut().for_each(|(_, t)| *t = t.map(|v| place[v as usize]));
     if keys.windows(2).any(|pair| pair[0] >> 32 == pair[1] >> 32) {
         let triangles: Vec<[u32; 3]> = usable.iter().map(|&(_, t)| t).collect();
         let codes: Vec<u128> = keys.iter().map(|key| key >> 32).collect();
@@ -68,7 +68,7 @@ pub(super) fn order<'a>(
         turned.sort_by_cached_key(|&(t, corner)| (t, signatures.triangle(corner), corner));
     }
     let ordered = Ordered {
-        cells: vertex_source.iter().map(|&v| grid.cell(mesh.positions()[v as usize])).collect(),
+        cells: vertex_source.par_iter().map(|&v| grid.cell(mesh.positions()[v as usize])).collect(),
         vertex_source,
         corner_source: turned.iter().map(|&(_, corner)| corner).collect(),
     };

@@ -122,6 +122,9 @@ fn turned_to(triangle: [u32; 3], corner: u32, first: u32) -> u32 {
 impl Exact<'_> {
     /// Kinds and payloads of the chunks. `roots`: the glue of the surface.
     pub(super) fn trailing(&self, surface: &Written, roots: Vec<u32>) -> Vec<(u8, Vec<u8>)> {
+        if self.says_nothing() {
+            return Vec::new();
+        }
         let mut extras = Extras { roots, ..Extras::default() };
         let joined = extras.joined(surface.vertex_source.len());
         // Vertex of the mesh for each vertex of the joined one.
@@ -164,6 +167,13 @@ impl Exact<'_> {
             chunks.push((kind::ORDER, write_order(&vertices, &faces, &corners)));
         }
         chunks
+    }
+
+    /// Whether the surface alone is all that is wanted.
+    fn says_nothing(&self) -> bool {
+        let has_loose = !self.loose.is_empty() || !self.loose_corners.is_empty();
+        let EncodeOptions { lossless, keep_order, .. } = *self.options;
+        !(has_loose || lossless || keep_order || !self.values.quantised.list.is_empty())
     }
 
     /// What is loose, and the corner of the mesh that is the first of each loose face.

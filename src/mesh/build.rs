@@ -2,6 +2,7 @@
 
 use super::surface::{NO_CORNER, Surface, next, prev};
 use super::tri_mesh::has_three_vertices;
+use crate::parallel::fill;
 use thiserror::Error;
 
 /// Why triangles are not an oriented surface.
@@ -49,15 +50,21 @@ impl Surface {
             return Err(SurfaceError::Degenerate(f as u32));
         }
         let edges = EdgeIndex::new(&self.triangles, self.corner_of.len());
-        for corner in 0..self.opposite.len() as u32 {
-            let (from, to) = (self.vertex(next(corner)), self.vertex(prev(corner)));
-            if edges.facing(from, to).nth(1).is_some() {
-                return Err(SurfaceError::RepeatedEdge(from, to));
-            }
-            if let Some(twin) = edges.facing(to, from).next() {
-                self.opposite[corner as usize] = twin;
-            }
+        /// No corner either.
+        const REPEATED: u32 = NO_CORNER - 1;
+        let mut opposite = std::mem::take(&mut self.opposite);
+        let ends = |corner: u32| (self.vertex(next(corner)), self.vertex(prev(corner)));
+        let across = |corner: usize| {
+            let (from, to) = ends(corner as u32);
+            let is_repeated = edges.facing(from, to).nth(1).is_some();
+            if is_repeated { REPEATED } else { edges.facing(to, from).next().unwrap_or(NO_CORNER) }
+        };
+        fill(&mut opposite, || (), |(), corner| across(corner));
+        if let Some(corner) = opposite.iter().position(|&o| o == REPEATED) {
+            let (from, to) = ends(corner as u32);
+            return Err(SurfaceError::RepeatedEdge(from, to));
         }
+        self.opposite = opposite;
         Ok(())
     }
 
@@ -69,18 +76,20 @@ impl Surface {
                 self.corner_of[v as usize] = (3 * f + i) as u32;
             }
         }
-        let mut corners = Vec::new();
-        for (v, &num_corners) in corners_at.iter().enumerate() {
-            let corner = self.corner_of[v];
+        let mut valence = std::mem::take(&mut self.valence);
+        // 0 if the corners are not one fan.
+        fill(&mut valence, Vec::new, |corners, v| {
+            let (corner, num_corners) = (self.corner_of[v], corners_at[v]);
             if corner == NO_CORNER {
-                return Err(SurfaceError::NotOneFan(v as u32));
+                return 0;
             }
-            let closed = self.fan(corner, &mut corners);
-            if corners.len() as u32 != num_corners {
-                return Err(SurfaceError::NotOneFan(v as u32));
-            }
-            self.valence[v] = num_corners + u32::from(!closed);
+            let closed = self.fan(corner, corners);
+            if corners.len() as u32 == num_corners { num_corners + u32::from(!closed) } else { 0 }
+        });
+        if let Some(v) = valence.iter().position(|&valence| valence == 0) {
+            return Err(SurfaceError::NotOneFan(v as u32));
         }
+        self.valence = valence;
         Ok(())
     }
 }

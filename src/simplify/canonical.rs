@@ -3,7 +3,6 @@
 //! reverse order, so that a decoder finds around each patch the valences that chose its triangles.
 
 use super::ShrinkingSurface;
-use super::shrinking::FREE;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use bitvec::vec::BitVec;
@@ -70,8 +69,13 @@ impl Anchors {
 }
 
 /// The odd vertices in the order in which the walk meets them: of each the corner that faces the
-/// gate.
-pub(crate) fn patch_order(shrinking: &ShrinkingSurface, odd: &BitVec, anchors: &Anchors) -> Vec<u32> {
+/// gate. `faces` are the slots that hold one.
+pub(crate) fn patch_order(
+    shrinking: &ShrinkingSurface,
+    faces: &[u32],
+    odd: &BitVec,
+    anchors: &Anchors,
+) -> Vec<u32> {
     let surface = &shrinking.surface;
     let mut walk = Walk {
         surface,
@@ -81,10 +85,10 @@ pub(crate) fn patch_order(shrinking: &ShrinkingSurface, odd: &BitVec, anchors: &
         fan: Vec::new(),
         order: Vec::new(),
     };
-    let rest = (0..surface.triangles.len() as u32).map(|f| 3 * f);
+    let rest = faces.iter().map(|f| 3 * f);
     for seed in anchors.corners(surface).chain(rest) {
         let face = (seed / 3) as usize;
-        if walk.decided[face] || surface.triangles[face] == FREE {
+        if walk.decided[face] {
             continue;
         }
         let corners = [seed, next(seed), prev(seed)];
