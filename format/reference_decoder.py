@@ -1046,6 +1046,18 @@ def restore(mesh, patch):
 # 8.1 Neighbourhood
 
 
+def tangent_plane(normal):
+    """Axes in coding order, and what the first two count in the last one."""
+    x, y, z = (abs(a) for a in normal)
+    axes = (1, 2, 0) if x > y and x > z else (0, 2, 1) if y > z else (0, 1, 2)
+    slope = [ZERO] * 3
+    if normal[axes[2]] != 0:
+        inverse = 1 / normal[axes[2]]
+        for a in axes[:2]:
+            slope[a] = Single(clamp(normal[a] * inverse, -4.0, 4.0))
+    return axes, slope
+
+
 class Neighbourhood:
     """`tip_of(i, u)` gives the fine and the coarse vertex of a tip, or NONE for either."""
 
@@ -1110,14 +1122,7 @@ class Neighbourhood:
         self.features = [self.frame(f) for f in (scaled(fine, share), scaled(coarse, share), ends)]
 
     def set_frame(self, normal):
-        x, y, z = (abs(a) for a in normal)
-        self.axes = (1, 2, 0) if x > y and x > z else (0, 2, 1) if y > z else (0, 1, 2)
-        across = self.axes[2]
-        self.slope = [ZERO] * 3
-        if normal[across] != 0:
-            inverse = 1 / normal[across]
-            for a in self.axes[:2]:
-                self.slope[a] = Single(clamp(normal[a] * inverse, -4.0, 4.0))
+        self.axes, self.slope = tangent_plane(normal)
 
     def frame(self, p):
         across = self.axes[2]
@@ -1444,19 +1449,20 @@ def decode_plain(coder, mesh, patch, ring):
         if tip != NONE and (closed or i > 0):
             over, k = add(over, sub(add(before, p), way(origin, mesh.cell[tip]))), k + 1
     mean = scaled(total, share)
-    guess = add(mean, scaled(sub(over, scaled(mean, k)), 0.5 * share))
+    guess = add(mean, scaled(sub(over, scaled(mean, k)), 0.25 * share))
     x, y, z = (abs(a) for a in sub(point[d // 2], mean))
     log_length = log2(x + y + z + 1)
     classes = [int(clamp(log_length + Single(r) * (share * 0.125) + 2, 0.0, 11.0)) for r in rough]
-    x, y, z = (abs(a) for a in normal)
-    across = 0 if x > y and x > z else 1 if y > z else 2
-    cell, sizes = [], [0, 0]
-    for axis in range(3):
-        expected = origin[axis] + int(clamp(math.floor(guess[axis] + 0.5), -1e9, 1e9))
-        kind = int(axis == across)
+    axes, slope = tangent_plane(normal)
+    missed, cell, sizes = [ZERO] * 3, [0] * 3, [0, 0]
+    for axis in axes:
+        kind = int(axis == axes[2])
+        g = guess[axis] - dot(slope, missed) if kind else guess[axis]
+        expected = origin[axis] + int(clamp(math.floor(g + 0.5), -1e9, 1e9))
         difference = coder.difference(SYMBOLS + 2 * classes[kind] + kind)
-        cell.append(expected + difference)
+        cell[axis] = expected + difference
         require(0 <= cell[axis] < 1 << mesh.precision, "a vertex lies outside the grid")
+        missed[axis] = Single(cell[axis] - origin[axis]) - guess[axis]
         sizes[kind] += abs(difference) >> 1 - kind
     mesh.cell.append(cell)
     mesh.roughness.append([int(clamp((log2(Single(s) + 0.5) - log_length) * 8, -120.0, 120.0)) for s in sizes])

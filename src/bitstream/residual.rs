@@ -6,7 +6,7 @@
 use super::mixer::MixedBit;
 use super::mixture::Mixture;
 use super::range_coder::{BitCoder, PROBABILITY_ONE};
-use super::tables::{Tables, index_below};
+use super::tables::{Tables, index_below, round_half_up};
 
 /// Values of each context that the caller gives.
 pub(crate) const CALLER_CONTEXTS: usize = 256;
@@ -183,15 +183,6 @@ impl ResidualModel {
         let residual = if positive { magnitude } else { -magnitude };
         i32::try_from(if mirrored { base - residual } else { base + residual }).ok()
     }
-}
-
-/// The integer nearest to `x`, halves upwards: ⌊x + ½⌋ without the library call that `floor` is
-/// where the processor's own is not assumed.
-#[inline(always)]
-fn round_half_up(x: f32) -> i32 {
-    let shifted = x + 0.5;
-    let truncated = shifted as i32;
-    truncated - i32::from(truncated as f32 > shifted)
 }
 
 #[cfg(test)]

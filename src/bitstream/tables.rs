@@ -107,6 +107,15 @@ pub(crate) fn index_below(x: f32, count: usize) -> usize {
     usize::from(x as u16).min(count - 1)
 }
 
+/// The integer nearest to `x`, halves upwards: ⌊x + ½⌋ without the library call that `floor` is
+/// where the processor's own is not assumed.
+#[inline(always)]
+pub(crate) fn round_half_up(x: f32) -> i32 {
+    let shifted = x + 0.5;
+    let truncated = shifted as i32;
+    truncated - i32::from(truncated as f32 > shifted)
+}
+
 /// Base-2 logarithm of a positive, normal number, to about 0.0002.
 #[inline(always)]
 pub(crate) fn log2(x: f32) -> f32 {

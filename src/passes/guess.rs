@@ -352,7 +352,7 @@ impl<'a> VertexGuess<'a> {
 
 /// Axes in coding order: the one closest to the normal last, the other two ascending.
 #[inline(always)]
-fn axis_order(normal: Lanes) -> [usize; 3] {
+pub(super) fn axis_order(normal: Lanes) -> [usize; 3] {
     let [x, y, z, _] = normal.abs().0;
     if x > y && x > z {
         [1, 2, 0]
@@ -367,7 +367,7 @@ fn axis_order(normal: Lanes) -> [usize; 3] {
 /// that lies elsewhere on the surface is moved along its tangent plane. Returns what the other two
 /// axes count.
 #[inline(always)]
-fn slopes(normal: Lanes, axes: [usize; 3]) -> Lanes {
+pub(super) fn slopes(normal: Lanes, axes: [usize; 3]) -> Lanes {
     let axis = axes[ACROSS];
     let n = normal.0[axis];
     if n == 0.0 {

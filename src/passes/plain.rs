@@ -2,16 +2,17 @@
 //! ring and coarse tips, differences as symbols.
 
 use super::Malformed;
+use super::guess::{ACROSS, axis_order, slopes};
 use super::patch::{Patches, Star};
 use super::work::Work;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::streams::stream;
-use crate::bitstream::tables::{index_below, log2};
+use crate::bitstream::tables::{index_below, log2, round_half_up};
 use crate::lanes::Lanes;
 use crate::mesh::surface::NO_CORNER;
 
 /// Share of the parallelograms' mean distance from the ring's mean.
-const TIP_SHARE: f32 = 0.5;
+const TIP_SHARE: f32 = 0.25;
 /// Expected sizes of residuals that streams of symbols tell apart, by powers of two.
 const CLASSES: usize = stream::NUM_SYMBOLS / 2;
 
@@ -69,22 +70,27 @@ pub(crate) fn code_vertex<B: BitCoder>(
         2 * index_below(log_size + 2.0, CLASSES)
     };
     let symbols = [stream::SYMBOLS + class(rough[0]), stream::SYMBOLS + 1 + class(rough[1])];
-    let [x, y, z, _] = normal.abs().0;
-    let across = if x > y && x > z { 0 } else { 1 + usize::from(z >= y) };
+    let axes = axis_order(normal);
+    let slopes = slopes(normal, axes);
+    // How much further the vertex lies than guessed, along the axes so far.
+    let mut missed = Lanes::ZERO;
     let mut position = [0; 3];
     let mut sizes = [0; 2];
-    for axis in 0..3 {
+    for (kind, axis) in axes.into_iter().enumerate() {
+        let is_across = usize::from(kind == ACROSS);
+        // What lies elsewhere on the surface is moved along its tangent plane.
+        let guess = if kind == ACROSS { guess.0[axis] - slopes.dot3(missed) } else { guess.0[axis] };
         // Within 32 bits, whatever the cells are.
-        let nearest = (guess.0[axis] + 0.5).floor().clamp(-1e9, 1e9) as i32;
+        let nearest = round_half_up(guess.clamp(-1e9, 1e9));
         let expected = origin[axis] + nearest;
         let difference = wanted[axis] - expected;
-        let is_across = usize::from(axis == across);
         let difference = coder.difference(symbols[is_across], difference).ok_or(OUTSIDE)?;
         let cell = i64::from(expected) + i64::from(difference);
         if !(0..limit).contains(&cell) {
             return Err(OUTSIDE);
         }
         position[axis] = cell as i32;
+        missed.0[axis] = position[axis].wrapping_sub(origin[axis]) as f32 - guess;
         sizes[is_across] += difference.unsigned_abs() >> (1 - is_across);
     }
     positions.push(position);
