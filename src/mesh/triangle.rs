@@ -5,7 +5,7 @@ use glam::DVec3;
 /// Squared distance from `p` to a triangle: to its plane if `p` projects inside, else to the nearest edge.
 #[cfg(any(feature = "metrics", test))]
 pub(crate) fn squared_distance(p: DVec3, triangle: &[DVec3; 3]) -> f64 {
-    Triangle::new(triangle).squared_distance(p)
+    Triangle::new(triangle).nearer(p, f64::INFINITY)
 }
 
 /// Barycentric coordinates of the point of a triangle that is closest to `p` (Ericson, Real-Time Collision Detection,
@@ -76,24 +76,28 @@ impl Triangle {
         Self { a, b, ab, ac, bc, squared_lengths, normal, normal_squared, is_sliver }
     }
 
-    /// Squared distance from `p`.
+    /// Squared distance from `p`, or `squared` if that is less.
     #[inline]
-    pub(crate) fn squared_distance(&self, p: DVec3) -> f64 {
+    pub(crate) fn nearer(&self, p: DVec3, squared: f64) -> f64 {
         let &Self { a, b, ab, ac, bc, squared_lengths, normal, normal_squared, is_sliver } = self;
         let ap = p - a;
         if !is_sliver {
+            // No point is nearer than the plane.
+            let height = ap.dot(normal);
+            if height * height >= squared * normal_squared {
+                return squared;
+            }
             // Barycentric coordinates of the projection, times the squared normal.
             let of_c = ab.cross(ap).dot(normal);
             let of_b = ap.cross(ac).dot(normal);
             if of_b >= 0.0 && of_c >= 0.0 && of_b + of_c <= normal_squared {
-                let height = ap.dot(normal);
-                return height * height / normal_squared;
+                return squared.min(height * height / normal_squared);
             }
         }
         let to_ab = squared_distance_to_segment(ap, ab, squared_lengths[0]);
         let to_ac = squared_distance_to_segment(ap, ac, squared_lengths[1]);
         let to_bc = squared_distance_to_segment(p - b, bc, squared_lengths[2]);
-        to_ab.min(to_ac).min(to_bc)
+        squared.min(to_ab.min(to_ac).min(to_bc))
     }
 }
 
