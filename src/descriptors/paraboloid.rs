@@ -109,6 +109,14 @@ struct Moments {
     yz: f64,
 }
 
+/// One number of as many members as are looked at together.
+type Row = [f64; LANES];
+
+#[inline(always)]
+fn product(a: &Row, b: &Row) -> Row {
+    std::array::from_fn(|lane| a[lane] * b[lane])
+}
+
 impl Moments {
     /// The moments of the usable vertices and their number, the centre (whose row is zero) not counted.
     fn of_window(local: &LocalWindow, frame: &Frame) -> (Self, usize) {
@@ -123,32 +131,35 @@ impl Moments {
                 *keep = f64::from(u8::from(accepted));
                 usable += usize::from(accepted);
             }
-            for lane in 0..LANES {
-                let d = DVec3::new(dx[lane], dy[lane], dz[lane]) * keep[lane];
-                let (x, y, z) = (d.dot(frame.x), d.dot(frame.y), d.dot(frame.z));
-                let (x2, xy, y2) = (x * x, x * y, y * y);
-                let terms = [
-                    x2,
-                    xy,
-                    y2, //
-                    x2 * x,
-                    x2 * y,
-                    x * y2,
-                    y2 * y, //
-                    x2 * x2,
-                    x2 * xy,
-                    x2 * y2,
-                    xy * y2,
-                    y2 * y2, //
-                    x2 * z,
-                    xy * z,
-                    y2 * z,
-                    x * z,
-                    y * z,
-                ];
-                for (sum, term) in sums.iter_mut().zip(terms) {
-                    sum[lane] += term;
-                }
+            // Whole rows at a time, which compilers make vectors of.
+            let row = |values: &[f64]| -> Row { std::array::from_fn(|lane| values[lane] * keep[lane]) };
+            let (dx, dy, dz) = (row(dx), row(dy), row(dz));
+            let along = |axis: DVec3| -> Row {
+                std::array::from_fn(|lane| dx[lane] * axis.x + dy[lane] * axis.y + dz[lane] * axis.z)
+            };
+            let (x, y, z) = (along(frame.x), along(frame.y), along(frame.z));
+            let (x2, xy, y2) = (product(&x, &x), product(&x, &y), product(&y, &y));
+            let terms = [
+                x2,
+                xy,
+                y2, //
+                product(&x2, &x),
+                product(&x2, &y),
+                product(&x, &y2),
+                product(&y2, &y), //
+                product(&x2, &x2),
+                product(&x2, &xy),
+                product(&x2, &y2),
+                product(&xy, &y2),
+                product(&y2, &y2), //
+                product(&x2, &z),
+                product(&xy, &z),
+                product(&y2, &z),
+                product(&x, &z),
+                product(&y, &z),
+            ];
+            for (sum, term) in sums.as_flattened_mut().iter_mut().zip(terms.as_flattened()) {
+                *sum += term;
             }
         }
         usable -= usize::from(frame.accepts(local, local.members()[0]));
