@@ -81,7 +81,7 @@ PARTS = {
         (THINNING, r"Some\(OUTLIER\)", "Some(OUTLIER).filter(|_| false)"),
     ],
     "Choice: holes closed close to the surface": [
-        (PARTITION, r"chosen, thinning\.tolerance, memory", "chosen, f64::INFINITY, memory"),
+        (PARTITION, r"thinning\.tolerance,", "f64::INFINITY,"),
     ],
     "Compensation: coarse meshes shown where they shrink less": [
         ("src/encoder/write.rs", r"let compensation = if is_last \{", "let compensation = if is_last || true {"),

@@ -2,7 +2,6 @@
 
 use crate::TriMesh;
 use crate::mesh::Surface;
-use crate::parallel::fill;
 use crate::simplify::ShrinkingSurface;
 use crate::simplify::shrinking::FREE;
 use rayon::prelude::*;
@@ -49,9 +48,8 @@ impl Level {
             left
         };
         let ((name, vertices), faces) = rayon::join(name_vertices, find_faces);
-        let mut triangles = vec![FREE; faces.len()];
-        let named = |i: usize| surface.triangles[faces[i] as usize].map(|v| name[v as usize]);
-        fill(&mut triangles, || (), |(), i| named(i));
+        let named = |&slot: &u32| surface.triangles[slot as usize].map(|v| name[v as usize]);
+        let triangles = faces.par_iter().map(named).collect();
         Self { vertices, faces, triangles }
     }
 

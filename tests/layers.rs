@@ -21,7 +21,7 @@ const LAYERS: [(&str, &[&str]); 25] = [
     ("descriptors", &["mesh", "morton"]),
     ("lifting", &["lanes"]),
     ("simplify", &["lanes", "mesh"]),
-    ("levels", &["mesh", "parallel", "simplify"]),
+    ("levels", &["mesh", "simplify"]),
     ("thinning", &["simplify"]),
     ("partition", &["levels", "mesh", "simplify", "thinning"]),
     ("descent", &["descriptors", "levels", "mesh", "partition", "simplify", "thinning"]),

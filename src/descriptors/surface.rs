@@ -63,20 +63,17 @@ impl Surface {
         let mesh_vertices = if in_order {
             (0..positions.len() as u32).collect()
         } else {
-            morton_order(&positions, scaled(low, shift), scaled(high, shift))
+            let order = morton_order(&positions, scaled(low, shift), scaled(high, shift));
+            let mut places = vec![0; order.len()];
+            order.iter().zip(0..).for_each(|(&v, place)| places[v as usize] = place);
+            triangles.par_iter_mut().for_each(|t| *t = t.map(|v| places[v as usize]));
+            order
         };
-        let mut surface_vertices = vec![0; mesh_vertices.len()];
-        for (i, &v) in mesh_vertices.iter().enumerate() {
-            surface_vertices[v as usize] = i as u32;
-        }
-        if !in_order {
-            triangles.par_iter_mut().for_each(|t| *t = t.map(|v| surface_vertices[v as usize]));
-        }
         let mut vertices: Vec<Vertex> = (mesh_vertices.par_iter())
             .map(|&v| Vertex { position: positions[v as usize], normal: DVec3::ZERO })
             .collect();
         // What follows takes the most memory.
-        drop((positions, surface_vertices));
+        drop(positions);
         let adjacent = || Adjacency::new(mesh_vertices.len(), &triangles);
         let adjacency = if vertices.len() < MANY_VERTICES {
             rayon::join(adjacent, || set_normals(&mut vertices, &triangles, normals)).0
