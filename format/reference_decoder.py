@@ -431,6 +431,9 @@ class Counters:
     def p(self, context):
         return self.states[context][0]
 
+    def age(self, context):
+        return self.states[context][1]
+
     def learn(self, context, bit):
         p, age = self.states[context]
         r = 131072 // (2 * age + 3)
@@ -448,29 +451,87 @@ class Plain:
         return bit
 
 
+class Corrections(Counters):
+    """Counters by context, value and place."""
+
+    def __init__(self, limit):
+        self.limit, self.states = limit, {}
+
+    def p(self, where):
+        if where not in self.states:
+            _, place = where
+            self.states[where] = squash(f32((place - 8) * 0.75)) << 6, 12
+        return super().p(where)
+
+
+class Weights:
+    def __init__(self, contexts, direct):
+        initial = f32(0.25 if Mixed.has_specialists else 0.35)
+        self.w = [0.0] + [initial] * contexts + [f32(direct)] * (7 - contexts)
+        self.coded = 0
+
+    def sum(self, x):
+        m = [f32(self.w[i] * x[i]) for i in range(8)]
+        h = [f32(m[i] + m[i + 4]) for i in range(4)]
+        return f32(f32(h[0] + h[2]) + f32(h[1] + h[3]))
+
+    def learn(self, x, p, bit, eagerness):
+        n = f32(self.coded)
+        self.coded += 1
+        rate = f32(f32(0.008) + f32(f32(0.05) / f32(1 + f32(n * (1 / 256)))))
+        step = f32(f32(bit - p * (1 / 65536)) * f32(rate * eagerness))
+        for i in range(8):
+            self.w[i] = f32(self.w[i] + f32(step * x[i]))
+
+
 class Mixed:
+    # True in the profile max.
+    has_specialists = False
+
     def __init__(self, contexts, direct, limit):
         self.counters = [Counters(limit) for _ in range(contexts)]
-        start = [0.0] + [f32(0.35)] * contexts + [f32(direct)] * (7 - contexts)
-        self.weights = collections.defaultdict(lambda: list(start))
-        self.coded = collections.Counter()
+        self.sets = collections.defaultdict(lambda: Weights(contexts, direct))
+        self.specialists = collections.defaultdict(lambda: Weights(contexts, direct))
+        self.corrections = Corrections(250)
 
     def code(self, coder, contexts, direct, which):
-        x = [f32(0.3)] + [STRETCH[s.p(c) >> 10] for s, c in zip(self.counters, contexts)] + direct
+        x = [f32(0.3)]
+        for counters, context in zip(self.counters, contexts):
+            age = counters.age(context)
+            say = f32((age + 1) / (age + 4)) if self.has_specialists else 1.0
+            x.append(f32(STRETCH[counters.p(context) >> 10] * say))
+        x += direct
         x += [0.0] * (8 - len(x))
-        w = self.weights[which]
-        m = [f32(w[i] * x[i]) for i in range(8)]
-        h = [f32(m[i] + m[i + 4]) for i in range(4)]
-        p = squash(f32(f32(h[0] + h[2]) + f32(h[1] + h[3])))
-        bit = coder.bit(p)
-        n = f32(self.coded[which])
-        self.coded[which] += 1
-        rate = f32(f32(0.008) + f32(f32(0.05) / f32(1 + f32(n * (1 / 256)))))
-        step = f32(f32(bit - p * (1 / 65536)) * rate)
-        for i in range(8):
-            w[i] = f32(w[i] + f32(step * x[i]))
+        weights = self.sets[which]
+        s = weights.sum(x)
+        if self.has_specialists:
+            bit = self.specialised(coder, contexts, x, s)
+        else:
+            bit = coder.bit(squash(s))
+        weights.learn(x, squash(s), bit, 1)
         for counters, context in zip(self.counters, contexts):
             counters.learn(context, bit)
+        return bit
+
+    def specialised(self, coder, contexts, x, s):
+        slots = list(enumerate(contexts[:3]))
+        sums = [self.specialists[slot].sum(x) for slot in slots]
+        total = 0.0
+        for own in sums:
+            total = f32(total + own)
+        n = len(slots)
+        together = f32(f32(s + f32(total * f32(0.3))) / f32(1 + f32(n * f32(0.3))))
+        place = clamp(f32(f32(together * f32(4 / 3)) + 8), 0.0, f32(15.99))
+        k = math.floor(place)
+        share = f32(place - k)
+        total = 0.0
+        for slot in slots:
+            low, high = (self.corrections.p((slot, k + j)) >> 6 for j in range(2))
+            total = f32(total + f32(low + f32((high - low) * share)))
+        bit = coder.bit(clamp(math.floor(f32(total / n)), 24, 65512))
+        for slot, own in zip(slots, sums):
+            self.specialists[slot].learn(x, squash(own), bit, 2)
+            self.corrections.learn((slot, k + (share > 0.5)), bit)
         return bit
 
 
@@ -2791,7 +2852,8 @@ def decode(stream):
             require(grid is None, "a chunk out of order")
             grid = read_grid(payload)
             profile = payload[0] >> 2
-            require(profile < 2, "unsupported profile")
+            require(profile < 3, "unsupported profile")
+            is_fast, Mixed.has_specialists = profile == 1, profile == 2
         elif kind == "L":
             require(grid and rows is None, "a chunk out of order")
             rows, precision = read_table(payload, grid[0])
@@ -2803,7 +2865,7 @@ def decode(stream):
         elif kind in "BSR":
             require(rows is not None and not awaited, "a chunk out of order")
             _, vertices, faces, _ = rows[done]
-            coder = Streams(payload, vertices) if profile and kind != "B" else RangeDecoder(payload)
+            coder = Streams(payload, vertices) if is_fast and kind != "B" else RangeDecoder(payload)
             if kind == "B":
                 mesh, patches = Base(coder, vertices, faces, precision).mesh, NONE
             elif kind == "S":
@@ -2813,9 +2875,9 @@ def decode(stream):
                 require(new_faces == faces, "a level has other faces than announced")
                 for patch in patches:
                     ring = restore(mesh, patch)
-                    if profile:
+                    if is_fast:
                         decode_plain(coder, mesh, patch, ring)
-                if not profile:
+                if not is_fast:
                     decode_coordinates(coder, *coordinates, mesh, patches)
             else:
                 refine(coder, *refinement, mesh)

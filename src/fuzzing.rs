@@ -5,6 +5,7 @@
 use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, Frame, kind};
 use crate::bitstream::header::{self, Action, Grid, Header, Pass};
+use crate::bitstream::mixer::Mixing;
 use crate::bitstream::mixture::Mixture;
 use crate::bitstream::pass_table;
 use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
@@ -18,7 +19,7 @@ use crate::{
     StreamInfo, TriMesh, Update, encode_with_attributes,
 };
 
-const SMALL: Limits = Limits { max_memory: 16 << 20, max_vertices: 100_000, max_levels: 64 };
+const SMALL: Limits = Limits { max_memory: 64 << 20, max_vertices: 100_000, max_levels: 64 };
 /// Meshes up to here are walked after every pass, larger ones after the last.
 const CHECKED_VERTICES: usize = 500;
 
@@ -271,15 +272,16 @@ pub fn range_coder(data: &[u8]) {
         bits.iter().for_each(|&(bit, p1)| assert_eq!(decoder.code(false, p1), bit));
         assert!(!decoder.is_exhausted());
     } else {
+        let mixing = if input.flag() { Mixing::Specialised } else { Mixing::Plain };
         let cases: Vec<Case> =
             std::iter::from_fn(|| (!input.0.is_empty()).then(|| Case::from(&mut input))).collect();
-        let (mut encoder, mut model) = (RangeEncoder::new(), ResidualModel::new());
+        let (mut encoder, mut model) = (RangeEncoder::new(), ResidualModel::new(mixing));
         for case in &cases {
             let coded = model.code(&mut encoder, &case.expectation, case.value);
             assert_eq!(coded, Some(case.value));
         }
         let bytes = encoder.finish();
-        let (mut decoder, mut model) = (RangeDecoder::new(&bytes), ResidualModel::new());
+        let (mut decoder, mut model) = (RangeDecoder::new(&bytes), ResidualModel::new(mixing));
         for case in &cases {
             assert_eq!(model.code(&mut decoder, &case.expectation, 0), Some(case.value));
         }
@@ -597,7 +599,7 @@ fn options_from(input: &mut Input) -> EncodeOptions {
         keep_degenerate: input.flag(),
         window: Window { rings: 1 + u32::from(input.u8() % 4), ..Window::default() },
         growth: 1.0 + f64::from(input.u8() % 8),
-        profile: Profile::ALL[usize::from(input.u8()) % Profile::ALL.len()],
+        profile: Some(Profile::ALL[usize::from(input.u8()) % Profile::ALL.len()]),
         effort: [5, 0, 9][usize::from(input.u8()) % 3],
         ..EncodeOptions::default()
     }

@@ -1,25 +1,30 @@
 //! How a stream is coded: size against speed.
 
+use crate::bitstream::mixer::Mixing;
+
 /// What codes the passes after the base mesh. All profiles of a mesh decode to the same meshes, vertex by
 /// vertex and triangle by triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Profile {
-    /// Arithmetic coding with learnt models: the smallest streams. The default.
+    /// Arithmetic coding with learnt models. The default.
     #[default]
     Small = 0,
     /// Packed bits and symbols, compressed with zstd: larger, and several times as fast to decode. Needs the
     /// feature `fast` on both sides.
     Fast = 1,
+    /// As [`Small`](Self::Small) with larger models: the smallest streams, which take XX times as long to decode.
+    Max = 2,
 }
 
 impl Profile {
     /// Every profile, in the order of their names in help texts.
-    pub const ALL: [Profile; 2] = [Profile::Small, Profile::Fast];
+    pub const ALL: [Profile; 3] = [Profile::Max, Profile::Small, Profile::Fast];
 
     /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
+            Profile::Max => "max",
             Profile::Small => "small",
             Profile::Fast => "fast",
         }
@@ -27,7 +32,15 @@ impl Profile {
 
     /// True if this build can code it.
     pub const fn is_supported(self) -> bool {
-        matches!(self, Profile::Small) || cfg!(feature = "fast")
+        !matches!(self, Profile::Fast) || cfg!(feature = "fast")
+    }
+
+    /// How its bits are mixed.
+    pub(crate) const fn mixing(self) -> Mixing {
+        match self {
+            Profile::Max => Mixing::Specialised,
+            Profile::Small | Profile::Fast => Mixing::Plain,
+        }
     }
 
     /// The profile of a number in a header (`format/SPEC.md`, section 4.1).

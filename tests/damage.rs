@@ -19,6 +19,7 @@ fn streams() -> Vec<(&'static str, Vec<u8>)> {
         ("torus", torus.clone(), Partition::Balanced, 9, Profile::Small),
         ("grid", noisy(grid(7, 6, |x, y| 0.2 * x * y), 2, 0.05), Partition::Algorithm1, 8, Profile::Small),
         ("strip", noisy(strip(34), 3, 0.02), Partition::Balanced, 7, Profile::Small),
+        ("max torus", torus.clone(), Partition::Balanced, 9, Profile::Max),
         ("fast torus", torus, Partition::Balanced, 9, Profile::Fast),
         ("fast strip", noisy(strip(34), 3, 0.02), Partition::Algorithm1, 7, Profile::Fast),
     ] {
@@ -27,7 +28,7 @@ fn streams() -> Vec<(&'static str, Vec<u8>)> {
         }
         let mut options = EncodeOptions::default();
         options.partition = partition;
-        options.profile = profile;
+        options.profile = Some(profile);
         options.quantization = quantization;
         options.steps_per_edge = Some(5.0);
         options.levels = Some(4);

@@ -147,7 +147,7 @@ fn profiles_and_cuts_keep_their_promises() {
     let attributes = all(vec![uv, colours(&mesh)]);
     let mut options = everything();
     let small = encode(&mesh, &attributes, &options);
-    options.profile = Profile::Fast;
+    options.profile = Some(Profile::Fast);
     let wanted = decode(&small);
     if Profile::Fast.is_supported() {
         assert_eq!(decode(&encode(&mesh, &attributes, &options)), wanted);

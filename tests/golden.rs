@@ -265,7 +265,7 @@ mod make {
         Attribute, Domain, GltfMaterials, IDENTITY, Instance, NO_ROW, ScalarType, SceneTable, Semantic,
         Values,
     };
-    use lwc::{EncodeOptions, Partition, TriMesh, encode, encode_with_attributes};
+    use lwc::{EncodeOptions, Partition, Profile, TriMesh, encode, encode_with_attributes};
     use std::path::Path;
     use std::sync::Once;
 
@@ -302,11 +302,24 @@ mod make {
         }
     }
 
+    fn bumpy(x: f64, y: f64) -> f64 {
+        0.6 * (0.7 * x).sin() * (0.5 * y).cos()
+    }
+
+    /// With attributes of every kind.
+    fn torn_grid(profile: Profile) -> Vec<u8> {
+        let mesh = noisy(grid(9, 8, bumpy), 15, 0.05);
+        let mut options = EncodeOptions::default();
+        options.profile = Some(profile);
+        let list = attributed::torn(&mesh);
+        encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
+    }
+
     #[cfg(feature = "fast")]
     fn all_fast() -> Vec<(&'static str, Vec<u8>)> {
-        let bumpy = |x: f64, y: f64| 0.6 * (0.7 * x).sin() * (0.5 * y).cos();
-        let fast =
-            |mesh: &TriMesh, bits| stream(mesh, |o| (o.profile, o.quantization) = (lwc::Profile::Fast, bits));
+        let fast = |mesh: &TriMesh, bits| {
+            stream(mesh, |o| (o.profile, o.quantization) = (Some(Profile::Fast), bits))
+        };
         vec![
             ("tetrahedron", fast(&tetrahedron(), 12)),
             ("open-grid", fast(&noisy(grid(16, 13, bumpy), 2, 0.05), 12)),
@@ -314,16 +327,10 @@ mod make {
             ("soup", fast(&soup(30, 60, 5), 9)),
             // Passes with all kinds of streams.
             ("large-torus", fast(&noisy(torus(100, 50), 1, 0.002), 7)),
-            ("torn-grid", {
-                let mesh = noisy(grid(9, 8, bumpy), 15, 0.05);
-                let mut options = EncodeOptions::default();
-                options.profile = lwc::Profile::Fast;
-                let list = attributed::torn(&mesh);
-                encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
-            }),
+            ("torn-grid", torn_grid(Profile::Fast)),
             ("strip-with-ears", {
                 stream(&noisy(strip(120), 3, 0.02), |o| {
-                    (o.partition, o.profile) = (Partition::Algorithm1, lwc::Profile::Fast);
+                    (o.partition, o.profile) = (Partition::Algorithm1, Some(Profile::Fast));
                 })
             }),
         ]
@@ -341,7 +348,6 @@ mod make {
     }
 
     fn all() -> Vec<(&'static str, Vec<u8>)> {
-        let bumpy = |x: f64, y: f64| 0.6 * (0.7 * x).sin() * (0.5 * y).cos();
         let default = |_: &mut EncodeOptions| {};
         let torus = noisy(torus(20, 9), 1, 0.02);
         let commented = {
@@ -391,6 +397,18 @@ mod make {
                 }),
             ),
             ("unknown-chunks", commented),
+            ("max-bumps", stream(&noisy(grid(36, 30, bumpy), 2, 0.03), |o| o.profile = Some(Profile::Max))),
+            ("max-strip-with-ears", {
+                stream(&noisy(strip(120), 3, 0.02), |o| {
+                    (o.partition, o.profile) = (Partition::Algorithm1, Some(Profile::Max));
+                })
+            }),
+            ("max-in-one-piece", {
+                stream(&noisy(grid(16, 13, bumpy), 2, 0.05), |o| {
+                    (o.levels, o.profile) = (Some(0), Some(Profile::Max));
+                })
+            }),
+            ("max-torn-grid", torn_grid(Profile::Max)),
             ("exact-floats", {
                 let narrow = map_positions(noisy(sphere(1), 3, 0.05), |p| p.map(|x| f64::from(x as f32)));
                 stream(&narrow, everything)

@@ -6,7 +6,7 @@ mod common;
 
 use common::chunks::{self, Chunk, Row};
 use common::*;
-use lwc::{DecodeError, Decoder, EncodeOptions, Limits, TriMesh, encode};
+use lwc::{DecodeError, Decoder, EncodeOptions, Limits, Profile, TriMesh, encode};
 use peak_alloc::PeakAlloc;
 use std::sync::{Mutex, MutexGuard};
 
@@ -69,9 +69,14 @@ fn what_limits_allow_is_an_upper_bound() {
     let _turn = turn();
     warm_up();
     for (name, mesh) in large_meshes() {
-        let stream = encode(&mesh, &EncodeOptions::default()).unwrap().bytes;
+        let mut options = EncodeOptions::default();
+        let small = encode(&mesh, &options).unwrap().bytes;
+        options.profile = Some(Profile::Max);
+        let max = encode(&mesh, &options).unwrap().bytes;
         // Whatever memory is allowed, the decoder holds no more, and says so when it stops.
-        for max_memory in [1 << 20, 4 << 20, 8 << 20, 16 << 20, 24 << 20] {
+        for (stream, max_memory) in
+            [1, 4, 8, 16, 24, 48].into_iter().flat_map(|m| [(&small, m << 20), (&max, m << 20)])
+        {
             let limits = Limits { max_memory, ..Limits::default() };
             let mut decoder = Decoder::new(limits);
             let (error, held) = peak(|| stream.chunks(1 << 12).find_map(|bytes| decoder.push(bytes).err()));

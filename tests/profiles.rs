@@ -8,11 +8,11 @@ use common::chunks;
 use common::exact::assert_round_trip;
 use common::kinds::every_kind;
 use common::*;
-use lwc::{DecodeError, Decoder, EncodeOptions, Limits, Partition, Profile, Step, TriMesh, encode};
+use lwc::{DecodeError, Decoder, EncodeOptions, Limits, Optimize, Partition, Profile, Step, TriMesh, encode};
 
 fn stream(mesh: &TriMesh, profile: Profile, partition: Partition) -> Vec<u8> {
     let mut options = EncodeOptions::default();
-    options.profile = profile;
+    options.profile = Some(profile);
     options.partition = partition;
     options.steps_per_edge = Some(6.0);
     encode(mesh, &options).unwrap().bytes
@@ -42,9 +42,12 @@ fn every_profile_gives_the_same_meshes() {
     for (name, mesh) in every_kind() {
         for partition in Partition::ALL {
             let small = meshes(&stream(&mesh, Profile::Small, partition), u32::MAX);
-            let fast = stream(&mesh, Profile::Fast, partition);
-            assert_eq!(meshes(&fast, u32::MAX), small, "{name}, {}", partition.name());
-            assert_eq!(meshes(&fast, 7), small, "{name}, {}, in slices", partition.name());
+            for profile in [Profile::Max, Profile::Fast] {
+                let what = format!("{name}, {}, {}", partition.name(), profile.name());
+                let other = stream(&mesh, profile, partition);
+                assert_eq!(meshes(&other, u32::MAX), small, "{what}");
+                assert_eq!(meshes(&other, 7), small, "{what}, in slices");
+            }
         }
     }
 }
@@ -54,7 +57,7 @@ fn fast_streams_return_at_every_precision() {
     for quantization in [1, 8, 16, 30] {
         for (name, mesh) in [("torus", noisy(torus(20, 9), 1, 0.02)), ("soup", soup(40, 90, 3))] {
             let mut options = EncodeOptions::default();
-            (options.profile, options.quantization) = (Profile::Fast, quantization);
+            (options.profile, options.quantization) = (Some(Profile::Fast), quantization);
             let encoded = assert_round_trip(&mesh, &options, name);
             assert_eq!(encoded.info.profile(), Profile::Fast);
         }
@@ -76,6 +79,36 @@ fn fast_streams_can_be_cut() {
         assert_eq!(preview, decoder.mesh().map(|mesh| mesh.num_triangles()));
     }
     assert_eq!(decoder.passes_done(), whole.len());
+}
+
+/// What the profile is for: it is no larger, on meshes that are not tiny.
+#[test]
+fn max_is_smaller_than_small() {
+    let bumpy = |x: f64, y: f64| 0.6 * (0.7 * x).sin() * (0.5 * y).cos();
+    for (name, mesh) in
+        [("torus", noisy(torus(70, 40), 1, 0.004)), ("grid", noisy(grid(60, 50, bumpy), 2, 0.05))]
+    {
+        let [max, small] =
+            [Profile::Max, Profile::Small].map(|profile| stream(&mesh, profile, Partition::Balanced).len());
+        assert!(max < small, "{name}: {max} and {small} bytes");
+    }
+}
+
+#[test]
+fn only_the_size_of_the_file_asks_for_max() {
+    let mesh = noisy(torus(20, 9), 1, 0.02);
+    let profile = |optimize: Optimize, profile: Option<Profile>| {
+        let mut options = EncodeOptions::default();
+        (options.optimize, options.profile) = (optimize, profile);
+        encode(&mesh, &options).unwrap().info.profile()
+    };
+    for optimize in Optimize::ALL {
+        let usual = if optimize == Optimize::Size { Profile::Max } else { Profile::Small };
+        assert_eq!(profile(optimize, None), usual);
+        for wanted in Profile::ALL {
+            assert_eq!(profile(optimize, Some(wanted)), wanted);
+        }
+    }
 }
 
 #[test]

@@ -11,5 +11,6 @@ pub(crate) mod mixture;
 pub(crate) mod pass_table;
 pub(crate) mod range_coder;
 pub(crate) mod residual;
+mod specialists;
 pub(crate) mod streams;
 pub(crate) mod tables;

@@ -3,7 +3,7 @@
 //! The prediction is a density: a centre and a scale. Its share of the mass on either side of each
 //! binary decision goes into the mixer beside the adaptive contexts, which correct its shape.
 
-use super::mixer::MixedBit;
+use super::mixer::{MixedBit, Mixing};
 use super::mixture::Mixture;
 use super::range_coder::{BitCoder, PROBABILITY_ONE};
 use super::tables::{Tables, index_below, round_half_up};
@@ -50,23 +50,32 @@ pub(crate) struct ResidualModel {
 impl ResidualModel {
     const LIMIT: u32 = 250;
 
-    pub(crate) fn new() -> Self {
+    pub(crate) fn new(mixing: Mixing) -> Self {
         let by_scale = NUM_KINDS * SCALE_BUCKETS;
         Self {
             zero: MixedBit::new(
+                mixing,
                 [by_scale * OFFSET_BUCKETS, CALLER_CONTEXTS, CALLER_CONTEXTS],
                 NUM_KINDS,
                 0.5,
                 Self::LIMIT,
             ),
-            sign: MixedBit::new([by_scale * OFFSET_BUCKETS / 4, SIGN_CONTEXTS], NUM_KINDS, 0.7, Self::LIMIT),
+            sign: MixedBit::new(
+                mixing,
+                [by_scale * OFFSET_BUCKETS / 4, SIGN_CONTEXTS],
+                NUM_KINDS,
+                0.7,
+                Self::LIMIT,
+            ),
             more: MixedBit::new(
+                mixing,
                 [by_scale * EXPONENTS, CALLER_CONTEXTS * EXPONENTS, CALLER_CONTEXTS * EXPONENTS],
                 NUM_KINDS * EXPONENTS,
                 0.4,
                 Self::LIMIT,
             ),
             mantissa: MixedBit::new(
+                mixing,
                 [2 * SCALE_BUCKETS * EXPONENTS, 2 * EXPONENTS * NUM_KINDS],
                 2,
                 0.6,
@@ -215,13 +224,13 @@ mod tests {
             }
         }
         let mut encoder = RangeEncoder::new();
-        let mut model = ResidualModel::new();
+        let mut model = ResidualModel::new(Mixing::Plain);
         for (value, expected) in &cases {
             assert_eq!(model.code(&mut encoder, expected, *value), Some(*value));
         }
         let bytes = encoder.finish();
         let mut decoder = RangeDecoder::new(&bytes);
-        let mut model = ResidualModel::new();
+        let mut model = ResidualModel::new(Mixing::Plain);
         for (value, expected) in &cases {
             assert_eq!(model.code(&mut decoder, expected, 0), Some(*value), "{expected:?}");
         }
@@ -230,7 +239,7 @@ mod tests {
     #[test]
     fn a_good_prediction_is_cheap() {
         let mut encoder = RangeEncoder::new();
-        let mut model = ResidualModel::new();
+        let mut model = ResidualModel::new(Mixing::Plain);
         for i in 0..10_000 {
             model.code(&mut encoder, &expectation(i, 0.1, 0.1), i);
         }

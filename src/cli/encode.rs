@@ -241,7 +241,7 @@ impl Report<'_> {
             "growth": args.growth,
             "partition": args.partition.name(),
             "optimize": args.optimize.name(),
-            "profile": args.profile.name(),
+            "profile": info.profile().name(),
             "effort": args.effort,
             "steps_per_edge": args.steps_per_edge,
             "read_seconds": self.read_seconds,

@@ -2,6 +2,7 @@
 
 use super::frame::PassInfo;
 use crate::bitstream::header::Action;
+use crate::bitstream::mixer::Mixing;
 use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeState};
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Values};
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
@@ -36,8 +37,8 @@ struct Pending {
 }
 
 impl AttributeDecoder {
-    pub(super) fn new(declarations: Declarations) -> Self {
-        let layers: Vec<Layer> = declarations.list.iter().map(Layer::new).collect();
+    pub(super) fn new(declarations: Declarations, mixing: Mixing) -> Self {
+        let layers: Vec<Layer> = declarations.list.iter().map(|d| Layer::new(d, mixing)).collect();
         let bytes = vec![0; layers.len()];
         Self { declarations, state: State { layers, pending: None }, bytes }
     }
@@ -221,13 +222,15 @@ pub(super) fn check_density(declarations: &Declarations, passes: &[PassInfo]) ->
 }
 
 /// Bytes of memory that attributes of a mesh may take.
-pub(super) fn memory_for(declarations: &Declarations, pass: &PassInfo) -> u64 {
-    /// The models of one attribute.
-    const FIXED_BYTES: u64 = 200 << 10;
+pub(super) fn memory_for(declarations: &Declarations, pass: &PassInfo, mixing: Mixing) -> u64 {
+    let models: u64 = match mixing {
+        Mixing::Plain => 200 << 10,
+        Mixing::Specialised => 12 << 20,
+    };
     let (vertices, faces) = (u64::from(pass.vertices), u64::from(pass.faces));
     let of_one = |declaration: &Declaration| {
         let row = 4 * declaration.num_channels() as u64 + 1;
-        FIXED_BYTES
+        models
             + match declaration.domain {
                 Domain::Vertex => vertices * (row + 4),
                 // A pass may replace as many rows as there are.

@@ -3,6 +3,7 @@
 use super::frame::{PassInfo, PassKind};
 use super::running::Running;
 use crate::bitstream::header::Action;
+use crate::bitstream::mixer::Mixing;
 use crate::bitstream::range_coder::RangeDecoder;
 use crate::limits::Limits;
 use crate::mesh::Surface;
@@ -21,18 +22,28 @@ pub(super) struct PassDecoder {
     pub(super) connectivity: ConnectivityModels,
     pub(super) coordinates: CoordinateModels,
     pub(super) refine: RefineModels,
+    pub(super) mixing: Mixing,
 }
 
 /// Bytes of memory that a vertex and a face of the finest mesh may take, working space included.
 const BYTES_PER_VERTEX: u64 = 64;
 const BYTES_PER_FACE: u64 = 72;
-/// The models.
-const FIXED_BYTES: u64 = 2 << 20;
+
+/// Bytes of memory that the models may take.
+const fn bytes_of_models(mixing: Mixing) -> u64 {
+    match mixing {
+        Mixing::Plain => 2 << 20,
+        Mixing::Specialised => 32 << 20,
+    }
+}
 
 /// Bytes of memory that decoding a pass may take, the buffer of the stream not counted.
-pub(super) fn memory_for(pass: &PassInfo) -> u64 {
+pub(super) fn memory_for(pass: &PassInfo, mixing: Mixing) -> u64 {
     let base = if let Action::Base { .. } = pass.row.action { 160 * u64::from(pass.faces) } else { 0 };
-    FIXED_BYTES + base + BYTES_PER_VERTEX * u64::from(pass.vertices) + BYTES_PER_FACE * u64::from(pass.faces)
+    bytes_of_models(mixing)
+        + base
+        + BYTES_PER_VERTEX * u64::from(pass.vertices)
+        + BYTES_PER_FACE * u64::from(pass.faces)
 }
 
 /// The parts of the mesh a pass changed.
@@ -46,12 +57,13 @@ pub(super) struct Changes {
 }
 
 impl PassDecoder {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(mixing: Mixing) -> Self {
         Self {
             mesh: GridMesh::default(),
-            connectivity: ConnectivityModels::new(),
-            coordinates: CoordinateModels::new(),
-            refine: RefineModels::new(),
+            connectivity: ConnectivityModels::new(mixing),
+            coordinates: CoordinateModels::new(mixing),
+            refine: RefineModels::new(mixing),
+            mixing,
         }
     }
 
@@ -133,8 +145,13 @@ impl Changes {
 }
 
 /// Checks a pass against the limits before anything is allocated for it. `held`: bytes that are taken besides.
-pub(super) fn check_limits(pass: &PassInfo, limits: &Limits, held: u64) -> Result<(), DecodeError> {
+pub(super) fn check_limits(
+    pass: &PassInfo,
+    mixing: Mixing,
+    limits: &Limits,
+    held: u64,
+) -> Result<(), DecodeError> {
     Limits::check("vertices", u64::from(pass.vertices), u64::from(limits.max_vertices))?;
     Limits::check("levels", u64::from(pass.level), u64::from(limits.max_levels))?;
-    Limits::check("memory", memory_for(pass) + held, limits.max_memory)
+    Limits::check("memory", memory_for(pass, mixing) + held, limits.max_memory)
 }

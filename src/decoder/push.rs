@@ -118,7 +118,7 @@ impl Decoder {
             profile: Profile::default(),
             info: None,
             done: 0,
-            passes: PassDecoder::new(),
+            passes: PassDecoder::new(Profile::default().mixing()),
             running: None,
             awaited: VecDeque::new(),
             attributes: None,
@@ -261,6 +261,7 @@ impl Decoder {
                     let profile = Profile::from_code(header.profile).filter(|profile| profile.is_supported());
                     let profile = profile.ok_or_else(|| unsupported_profile(header.profile))?;
                     self.profile = profile;
+                    self.passes = PassDecoder::new(profile.mixing());
                     let usual = header.is_usual.then_some(Provenance::USUAL);
                     self.provenance = self.provenance.or(usual);
                     self.header = Some(header);
@@ -296,7 +297,7 @@ impl Decoder {
                     Limits::check("memory", needed, self.limits.max_memory)?;
                     let declared =
                         Declarations::read(payload).ok_or(malformed("declarations of attributes"))?;
-                    self.attributes = Some(AttributeDecoder::new(declared));
+                    self.attributes = Some(AttributeDecoder::new(declared, self.profile.mixing()));
                 }
                 (kind::DECLARATIONS, _) if ASSETS => return Err(out_of_order(&chunk)),
                 (kind::COMPENSATION, _) if self.compensation.is_none() => {
@@ -327,9 +328,12 @@ impl Decoder {
         let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
         let pass = self.next_pass().ok_or(malformed("a pass that was not announced"))?;
         let payload = self.frames.payload(&chunk);
-        let attributes = self.attributes.as_ref().map(|a| attributes::memory_for(&a.declarations, pass));
+        let attributes = self
+            .attributes
+            .as_ref()
+            .map(|a| attributes::memory_for(&a.declarations, pass, self.passes.mixing));
         let held = self.frames.buffered() as u64 + attributes.unwrap_or(0);
-        passes::check_limits(pass, &self.limits, held)?;
+        passes::check_limits(pass, self.passes.mixing, &self.limits, held)?;
         let running =
             Running::new(payload, pass, self.profile).ok_or(malformed("a pass of other streams"))?;
         self.advance(running, chunk, work)
@@ -426,7 +430,7 @@ impl Decoder {
         if chunk::other_size(payload.len() as u32) != announced {
             return Err(malformed("a chunk differs from its announcement"));
         }
-        let used = self.frames.buffered() as u64 + passes::memory_for(pass);
+        let used = self.frames.buffered() as u64 + passes::memory_for(pass, self.passes.mixing);
         let mesh = &self.passes.mesh;
         let beside = Beside { payload, mesh, grid: &info.grid, limits: &self.limits, used };
         match chunk.kind {
@@ -566,8 +570,8 @@ impl Decoder {
             return None;
         }
         // Two copies that take as much again as the mesh itself.
-        let buffered = self.frames.buffered() as u64 + 2 * passes::memory_for(pass);
-        passes::check_limits(pass, &self.limits, buffered).ok()?;
+        let buffered = self.frames.buffered() as u64 + 2 * passes::memory_for(pass, self.passes.mixing);
+        passes::check_limits(pass, self.passes.mixing, &self.limits, buffered).ok()?;
         let (mesh, patches) = self.passes.mesh_with_cut(pass, payload)?;
         Some((pass, mesh, patches))
     }

@@ -4,6 +4,7 @@ use super::frame::{PassInfo, PassKind};
 use super::passes::PassDecoder;
 use crate::Profile;
 use crate::bitstream::header::Action;
+use crate::bitstream::mixer::Mixing;
 use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeState};
 use crate::bitstream::streams::StreamReader;
 use crate::passes::base::Grower;
@@ -121,7 +122,7 @@ impl Running {
         let (vertices, faces) = (pass.row.vertices as usize, pass.row.faces as usize);
         while work.is_left() {
             self.stage = match std::mem::replace(&mut self.stage, Stage::Over) {
-                Stage::Begin => self.begin(mesh, pass, work),
+                Stage::Begin => self.begin(mesh, pass, decoder.mixing, work),
                 Stage::Base(mut grower) => {
                     if grower.code_some(coder, work)? {
                         work.sweep(faces);
@@ -221,11 +222,11 @@ impl Running {
         Ok(None)
     }
 
-    fn begin(&mut self, mesh: &mut GridMesh, pass: &PassInfo, work: &mut Work) -> Stage {
+    fn begin(&mut self, mesh: &mut GridMesh, pass: &PassInfo, mixing: Mixing, work: &mut Work) -> Stage {
         match (pass.kind, pass.row.action) {
             (_, Action::Base { precision }) => {
                 let (vertices, faces) = (pass.vertices as usize, pass.faces as usize);
-                Stage::Base(Box::new(Grower::new(vertices, faces, precision, None)))
+                Stage::Base(Box::new(Grower::new(vertices, faces, precision, mixing, None)))
             }
             (PassKind::Refine, _) => Stage::Double(Vec::with_capacity(mesh.positions.len())),
             _ => {

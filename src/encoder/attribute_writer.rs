@@ -3,6 +3,7 @@
 use super::analysis::Hierarchy;
 use super::attributes::Quantised;
 use super::padded;
+use crate::bitstream::mixer::Mixing;
 use crate::bitstream::range_coder::RangeEncoder;
 use crate::mesh::{Domain, NO_ROW};
 use crate::passes::GridMesh;
@@ -23,8 +24,9 @@ pub(super) struct AttributeWriter<'a> {
 }
 
 impl<'a> AttributeWriter<'a> {
-    pub(super) fn new(quantised: &'a Quantised) -> Self {
-        let layers = quantised.list.iter().map(|attribute| Layer::new(&attribute.declaration)).collect();
+    pub(super) fn new(quantised: &'a Quantised, mixing: Mixing) -> Self {
+        let layers =
+            quantised.list.iter().map(|attribute| Layer::new(&attribute.declaration, mixing)).collect();
         Self { quantised, layers, truth: vec![Vec::new(); quantised.list.len()], payloads: Vec::new() }
     }
 

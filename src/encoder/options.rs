@@ -46,8 +46,9 @@ pub struct EncodeOptions {
     /// Keep the order of vertices and triangles and the first corner of each, behind the last pass. Default
     /// false.
     pub keep_order: bool,
-    /// How the passes are coded. Default small.
-    pub profile: Profile,
+    /// How the passes are coded; `None`: max where only the size of the file counts ([`Optimize::Size`]), else small.
+    /// Default `None`.
+    pub profile: Option<Profile>,
     /// Time that may be spent, 0 to 9. Below [`LOW_EFFORT`](Self::LOW_EFFORT) the descriptor has no say in the balanced
     /// partition, which takes it a third of the time less; from [`HIGH_EFFORT`](Self::HIGH_EFFORT) on several ways are
     /// tried where only the size of the file counts ([`Optimize::Size`]), with 9 all of them. Default 5.
@@ -74,7 +75,7 @@ impl Default for EncodeOptions {
             keep_degenerate: false,
             lossless: false,
             keep_order: false,
-            profile: Profile::default(),
+            profile: None,
             effort: 5,
         }
     }
@@ -88,6 +89,12 @@ impl EncodeOptions {
     /// From this effort on other partitions are tried as well.
     const HIGHEST_EFFORT: u32 = 9;
 
+    /// The profile that these options ask for.
+    pub(super) fn profile_used(&self) -> Profile {
+        let usual = if self.optimize == Optimize::Size { Profile::Max } else { Profile::Small };
+        self.profile.unwrap_or(usual)
+    }
+
     /// Ways down that are tried, the usual one first.
     pub(super) fn hierarchies_tried(&self) -> Vec<Attempt> {
         let usual = Attempt { levels: self.levels, max_valence: None };
@@ -97,7 +104,7 @@ impl EncodeOptions {
             tried.extend([5, 7].map(|valence| Attempt { max_valence: Some(valence), ..usual }));
         }
         // Many surfaces are smallest in one piece; but a base mesh takes its time whatever the profile.
-        let may_be_one = self.levels.is_none() && self.profile == Profile::Small;
+        let may_be_one = self.levels.is_none() && self.profile_used() != Profile::Fast;
         if is_for_size && may_be_one && self.effort >= Self::LOW_EFFORT {
             tried.push(Attempt { levels: Some(0), ..usual });
         }
@@ -136,8 +143,8 @@ impl EncodeOptions {
         if self.effort > 9 {
             return fail("effort", self.effort.to_string(), "0 to 9");
         }
-        if !self.profile.is_supported() {
-            return fail("profile", self.profile.name().to_owned(), "one that this build supports");
+        if let Some(profile) = self.profile.filter(|profile| !profile.is_supported()) {
+            return fail("profile", profile.name().to_owned(), "one that this build supports");
         }
         if !(1..=64).contains(&self.window.rings) {
             return fail("rings", self.window.rings.to_string(), "1 to 64");

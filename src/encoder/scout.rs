@@ -2,6 +2,7 @@
 //! coordinates, and the encoder knows where the vertices will be.
 
 use super::expect_sound;
+use crate::bitstream::mixer::Mixing;
 use crate::bitstream::range_coder::{BitCoder, RangeEncoder};
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
@@ -38,9 +39,9 @@ pub(super) struct Scout {
 }
 
 impl Scout {
-    pub(super) fn new(num_faces: usize) -> Self {
+    pub(super) fn new(num_faces: usize, mixing: Mixing) -> Self {
         let patch_of_slot = vec![NOT_IN_PATCH; num_faces];
-        Self { models: ConnectivityModels::new(), patch_of_slot, mesh: GridMesh::default() }
+        Self { models: ConnectivityModels::new(mixing), patch_of_slot, mesh: GridMesh::default() }
     }
 
     /// Takes a copy of the surface from which [`find_ahead`](Self::find_ahead) starts: the vertices on it are not

@@ -44,7 +44,7 @@ pub(super) fn write(
 ) -> Vec<u8> {
     let (mut writer, mut names) =
         PassWriter::new(hierarchy, cells, attributes, exact, points, schedule.base_precision);
-    let mut scout = Scout::new(hierarchy.num_faces);
+    let mut scout = Scout::new(hierarchy.num_faces, writer.profile.mixing());
     let is_split = |step: &&Step| matches!(step, Step::Split(_));
     let num_first = schedule.steps.iter().take_while(|step| !is_split(step)).count();
     let (first, rest) = schedule.steps.split_at(num_first);
@@ -116,7 +116,7 @@ fn assemble(
     chunk::write(
         &mut bytes,
         kind::HEADER,
-        &Header { grid: *grid, is_usual, profile: options.profile as u8 }.write(),
+        &Header { grid: *grid, is_usual, profile: options.profile_used() as u8 }.write(),
     );
     if has_levels && !is_usual {
         chunk::write(&mut bytes, kind::PROVENANCE, &provenance.write());
@@ -201,14 +201,15 @@ impl<'a> PassWriter<'a> {
         precision: u32,
     ) -> (Self, Names) {
         let full_precision = exact.grid.precision;
-        let profile = exact.options.profile;
+        let profile = exact.options.profile_used();
+        let mixing = profile.mixing();
         let hidden = full_precision - precision;
         let positions: Vec<[i32; 3]> =
             hierarchy.base_vertices.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)).collect();
         let target = BaseTarget { surface: &hierarchy.base, positions: &positions };
         let (num_vertices, num_faces) = (positions.len(), hierarchy.base.triangles.len());
         let mut coder = RangeEncoder::new();
-        let coded = base::code(&mut coder, num_vertices, num_faces, precision, Some(&target));
+        let coded = base::code(&mut coder, num_vertices, num_faces, precision, mixing, Some(&target));
         let coded = expect_sound(coded);
         let faces = coded.corner_source.iter().map(|&c| c / 3);
         let names = Names {
@@ -221,9 +222,9 @@ impl<'a> PassWriter<'a> {
             full_precision,
             precision,
             mesh: coded.mesh,
-            coordinates: CoordinateModels::new(),
-            refine: RefineModels::new(),
-            attributes: AttributeWriter::new(attributes),
+            coordinates: CoordinateModels::new(mixing),
+            refine: RefineModels::new(mixing),
+            attributes: AttributeWriter::new(attributes, mixing),
             passes: Vec::new(),
             source: exact.source,
             fitter: Fitter::new(points, &hierarchy.records, cells),
@@ -283,7 +284,7 @@ impl<'a> PassWriter<'a> {
         let target: Vec<[i32; 3]> =
             names.vertex_source.iter().map(|&v| self.cells[v as usize].map(|c| c >> hidden)).collect();
         let payload = match self.profile {
-            Profile::Small => {
+            Profile::Max | Profile::Small => {
                 let mut coder = RangeEncoder::new();
                 refine::code(&mut coder, &mut self.refine, &mut self.mesh, Some(&target));
                 coder.finish()

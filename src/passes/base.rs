@@ -4,7 +4,7 @@
 use super::placement::Placement;
 use super::work::Work;
 use super::{GridMesh, Malformed};
-use crate::bitstream::mixer::{MixedBit, PlainBits};
+use crate::bitstream::mixer::{MixedBit, Mixing, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
 use crate::mesh::Surface;
@@ -46,9 +46,10 @@ pub(crate) fn code<B: BitCoder>(
     num_vertices: usize,
     num_faces: usize,
     precision: u32,
+    mixing: Mixing,
     target: Option<&BaseTarget>,
 ) -> Result<Base, Malformed> {
-    let mut grower = Grower::new(num_vertices, num_faces, precision, target);
+    let mut grower = Grower::new(num_vertices, num_faces, precision, mixing, target);
     grower.code_some(coder, &mut Work::unlimited())?;
     let mut placement = grower.finish()?;
     placement.code_some(coder, &mut Work::unlimited())?;
@@ -65,16 +66,16 @@ struct BaseModels {
 }
 
 impl BaseModels {
-    fn new() -> Self {
+    fn new(mixing: Mixing) -> Self {
         const D: usize = DEGREES;
         const E: usize = DEGREES_OR_NONE;
         let tip = || {
             let sizes = [D * D, D * D * E, D * D * E, D * E * D, E * E, NUM_TIPS * E * E * 4];
-            MixedBit::new(sizes, D, 0.0, LIMIT)
+            MixedBit::new(mixing, sizes, D, 0.0, LIMIT)
         };
         Self {
             is_new_in_seed: PlainBits::new(1),
-            has_face: MixedBit::new([8, D * D * 4], 1, 0.0, LIMIT),
+            has_face: MixedBit::new(mixing, [8, D * D * 4], 1, 0.0, LIMIT),
             tip: [tip(), tip(), tip()],
             far: PlainBits::new(2 * MAX_STEPS),
         }
@@ -114,6 +115,7 @@ pub(crate) struct Grower<'a> {
     num_vertices: usize,
     num_faces: usize,
     precision: u32,
+    mixing: Mixing,
     triangles: Vec<[u32; 3]>,
     opposite: Vec<u32>,
     around: Vec<Around>,
@@ -136,6 +138,7 @@ impl<'a> Grower<'a> {
         num_vertices: usize,
         num_faces: usize,
         precision: u32,
+        mixing: Mixing,
         target: Option<&'a BaseTarget<'a>>,
     ) -> Self {
         let target_vertices = target.map_or(0, |t| t.positions.len());
@@ -145,12 +148,13 @@ impl<'a> Grower<'a> {
             num_vertices,
             num_faces,
             precision,
+            mixing,
             triangles: Vec::with_capacity(num_faces),
             opposite: Vec::with_capacity(3 * num_faces),
             around: Vec::with_capacity(num_vertices),
             open: HashMap::new(),
             gates: VecDeque::new(),
-            models: BaseModels::new(),
+            models: BaseModels::new(mixing),
             last_tip: Tip::New,
             vertex_source: Vec::new(),
             vertex_of_target: vec![u32::MAX; target_vertices],
@@ -184,11 +188,12 @@ impl<'a> Grower<'a> {
         if self.around.len() != self.num_vertices {
             return Err(Malformed("the base mesh has fewer vertices than announced"));
         }
-        let Self { target, num_vertices, precision, triangles, vertex_source, corner_source, .. } = self;
+        let Self { target, num_vertices, precision, mixing, triangles, vertex_source, corner_source, .. } =
+            self;
         let surface = Surface::from_triangles(triangles, num_vertices)
             .map_err(|_| Malformed("the base mesh is not a surface"))?;
         let base = Base { mesh: GridMesh { surface, ..GridMesh::default() }, vertex_source, corner_source };
-        Ok(Placement::new(base, precision, target.map(|t| t.positions)))
+        Ok(Placement::new(base, precision, mixing, target.map(|t| t.positions)))
     }
 
     /// Starts a component: the first target triangle that is not coded yet.
@@ -396,9 +401,12 @@ mod tests {
             (0..num_vertices as i32).map(|i| [i * 37 % 101, i * i % 97, i * 11 % 89]).collect();
         let target = BaseTarget { surface: &surface, positions: &positions };
         let mut encoder = RangeEncoder::new();
-        let written = code(&mut encoder, num_vertices, triangles.len(), 7, Some(&target)).unwrap();
+        let written =
+            code(&mut encoder, num_vertices, triangles.len(), 7, Mixing::Plain, Some(&target)).unwrap();
         let bytes = encoder.finish();
-        let read = code(&mut RangeDecoder::new(&bytes), num_vertices, triangles.len(), 7, None).unwrap();
+        let read =
+            code(&mut RangeDecoder::new(&bytes), num_vertices, triangles.len(), 7, Mixing::Plain, None)
+                .unwrap();
 
         assert_eq!(read.mesh.positions, written.mesh.positions);
         assert_eq!(read.mesh.surface.triangles, written.mesh.surface.triangles);
@@ -445,7 +453,7 @@ mod tests {
                     (seed >> 24) as u8
                 })
                 .collect();
-            if let Ok(base) = code(&mut RangeDecoder::new(&bytes), 9, 12, 5, None) {
+            if let Ok(base) = code(&mut RangeDecoder::new(&bytes), 9, 12, 5, Mixing::Plain, None) {
                 assert!(base.mesh.positions.iter().flatten().all(|c| (0..32).contains(c)));
             }
         }

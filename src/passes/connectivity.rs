@@ -5,7 +5,7 @@ use super::patch::{CLOSED, Patches};
 use super::polygon::{FITS, Fit, Polygon, Triangle};
 use super::work::{SWEPT_PER_UNIT, Work};
 use super::{EXHAUSTED, GridMesh, Malformed};
-use crate::bitstream::mixer::{MixedBit, PlainBits};
+use crate::bitstream::mixer::{MixedBit, Mixing, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::streams::stream;
 use crate::bitstream::tables::{Tables, index_below};
@@ -46,15 +46,17 @@ const STATES: usize = MAX_SIZE * FITS * FITS;
 const GROW_SETS: usize = 2 * STATES;
 
 impl ConnectivityModels {
-    pub(crate) fn new() -> Self {
+    pub(crate) fn new(mixing: Mixing) -> Self {
         Self {
             in_patch: MixedBit::new(
+                mixing,
                 [FITS * FITS * 12, FITS * FITS * 8, 27 * 512, 512 * 3, 64 * 12, 16 * 8 * 16],
                 8,
                 0.0,
                 LIMIT,
             ),
             grow: MixedBit::new(
+                mixing,
                 [
                     STATES * FITS * 4,
                     STATES * FITS * 8,

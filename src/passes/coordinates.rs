@@ -6,6 +6,7 @@ use super::patch::Patches;
 use super::surroundings::Surroundings;
 use super::work::Work;
 use super::{EXHAUSTED, GridMesh, Malformed};
+use crate::bitstream::mixer::Mixing;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::residual::{Expectation, ResidualModel};
 
@@ -17,8 +18,8 @@ pub(crate) struct CoordinateModels {
 }
 
 impl CoordinateModels {
-    pub(crate) fn new() -> Self {
-        Self { guesses: GuessModels::new(), residuals: ResidualModel::new() }
+    pub(crate) fn new(mixing: Mixing) -> Self {
+        Self { guesses: GuessModels::new(), residuals: ResidualModel::new(mixing) }
     }
 
     /// Codes the three coordinates of a vertex, each between 0 and `limit`.

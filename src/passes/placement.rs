@@ -8,6 +8,7 @@ use super::guess::VertexGuess;
 use super::placing_order::PlacingOrder;
 use super::surroundings::{Fringe, Surroundings};
 use super::work::Work;
+use crate::bitstream::mixer::Mixing;
 use crate::bitstream::mixture::Mixture;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, SIGN_CONTEXTS};
@@ -38,7 +39,12 @@ pub(crate) struct Placement<'a> {
 
 impl<'a> Placement<'a> {
     /// Begins with the triangles of `base`; `target` has the cells in the encoder's order.
-    pub(super) fn new(mut base: Base, precision: u32, target: Option<&'a [[i32; 3]]>) -> Self {
+    pub(super) fn new(
+        mut base: Base,
+        precision: u32,
+        mixing: Mixing,
+        target: Option<&'a [[i32; 3]]>,
+    ) -> Self {
         let num_vertices = base.mesh.surface.corner_of.len();
         base.mesh.positions = vec![[0; 3]; num_vertices];
         base.mesh.roughness = vec![[UNKNOWN_ROUGHNESS; 2]; num_vertices];
@@ -49,7 +55,7 @@ impl<'a> Placement<'a> {
             base,
             target,
             limit,
-            models: CoordinateModels::new(),
+            models: CoordinateModels::new(mixing),
             fringe,
             jump: length,
             last: [(limit / 2) as i32; 3],

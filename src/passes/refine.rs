@@ -4,7 +4,7 @@ use super::GridMesh;
 use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
 use super::surroundings::{NUM_CLASSES, Surroundings};
 use super::work::Work;
-use crate::bitstream::mixer::MixedBit;
+use crate::bitstream::mixer::{MixedBit, Mixing};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::{Tables, index_below};
 
@@ -24,9 +24,9 @@ pub(crate) struct RefineModels {
 }
 
 impl RefineModels {
-    pub(crate) fn new() -> Self {
+    pub(crate) fn new(mixing: Mixing) -> Self {
         let sizes = [OFFSETS * SCALES, OFFSETS * NUM_CLASSES, OFFSETS * NUM_KINDS, OFFSETS * SCALES];
-        Self { guesses: GuessModels::new(), bit: MixedBit::new(sizes, NUM_KINDS, 0.4, LIMIT) }
+        Self { guesses: GuessModels::new(), bit: MixedBit::new(mixing, sizes, NUM_KINDS, 0.4, LIMIT) }
     }
 }
 

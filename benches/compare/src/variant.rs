@@ -5,12 +5,13 @@ use lwc::{EncodeOptions, Optimize, Partition, Profile};
 use std::fmt;
 use std::str::FromStr;
 
-/// An aim, the profile fast with the usual aim, or Algorithm 1, and a descriptor if not the usual one.
+/// An aim, another profile with the usual aim, or Algorithm 1, and a descriptor if not the usual one.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
     /// `None` is Algorithm 1.
     aim: Option<Optimize>,
-    profile: Profile,
+    /// `None` is that of the aim.
+    profile: Option<Profile>,
     descriptor: Option<Descriptor>,
     /// Not in one piece, though that be smaller.
     keeps_levels: bool,
@@ -51,10 +52,10 @@ impl fmt::Display for Variant {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let name = self.aim.map_or(Partition::Algorithm1.name(), Optimize::name);
         f.write_str(match self.profile {
-            Profile::Fast => self.profile.name(),
-            _ if self.keeps_levels => LEVELS,
-            _ if self.is_lazy => LAZY,
-            _ => name,
+            Some(profile) => profile.name(),
+            None if self.keeps_levels => LEVELS,
+            None if self.is_lazy => LAZY,
+            None => name,
         })?;
         self.descriptor.map_or(Ok(()), |descriptor| write!(f, ":{}", descriptor.name()))
     }
@@ -70,13 +71,13 @@ impl FromStr for Variant {
             }
             None => (text, None),
         };
-        let (profile, aim_of_most) = (Profile::default(), Some(Optimize::default()));
-        let usual = Self { aim: None, profile, descriptor, keeps_levels: false, is_lazy: false };
+        let aim_of_most = Some(Optimize::default());
+        let usual = Self { aim: None, profile: None, descriptor, keeps_levels: false, is_lazy: false };
         if aim == Partition::Algorithm1.name() {
             return Ok(usual);
         }
-        if aim == Profile::Fast.name() {
-            return Ok(Self { aim: aim_of_most, profile: Profile::Fast, ..usual });
+        if let Some(profile) = [Profile::Max, Profile::Fast].into_iter().find(|p| p.name() == aim) {
+            return Ok(Self { aim: aim_of_most, profile: Some(profile), ..usual });
         }
         if aim == LAZY {
             return Ok(Self { aim: aim_of_most, is_lazy: true, ..usual });
@@ -86,7 +87,7 @@ impl FromStr for Variant {
         }
         let found = Optimize::ALL.into_iter().find(|known| known.name() == aim);
         found.map(|aim| Self { aim: Some(aim), ..usual }).ok_or_else(|| {
-            format!("`{aim}` is neither size, levels, balanced, lazy, prefix, fast nor algorithm1")
+            format!("`{aim}` is neither size, levels, balanced, lazy, prefix, max, fast nor algorithm1")
         })
     }
 }

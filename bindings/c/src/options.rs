@@ -51,7 +51,7 @@ pub struct EncodeOptions {
     pub color_bits: u32,
     /// Bits of a component of any other attribute, 1 to 30.
     pub generic_bits: u32,
-    /// How the passes are coded, "small" or "fast"; null for the default.
+    /// How the passes are coded, "max", "small" or "fast"; null for max where `optimize` is "size", else small.
     pub profile: *const c_char,
     /// Time that may be spent, 0 to 9.
     pub effort: u32,
@@ -123,7 +123,7 @@ pub fn encode(from: &EncodeOptions) -> Result<lwc::EncodeOptions, Status> {
     }
     if let Some(name) = name(from.profile) {
         let found = Profile::ALL.into_iter().find(|profile| profile.name() == name);
-        options.profile = found.ok_or_else(|| unknown("profile", &name))?;
+        options.profile = Some(found.ok_or_else(|| unknown("profile", &name))?);
     }
     options.window = Window { rings: from.rings, radius: from.radius };
     options.growth = from.growth;

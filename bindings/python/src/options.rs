@@ -19,7 +19,7 @@ pub fn encode(py: Python<'_>, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<
             }
             "partition" => options.partition = find(py, &key, &Partition::ALL, Partition::name, &name()?)?,
             "optimize" => options.optimize = find(py, &key, &Optimize::ALL, Optimize::name, &name()?)?,
-            "profile" => options.profile = find(py, &key, &Profile::ALL, Profile::name, &name()?)?,
+            "profile" => options.profile = Some(find(py, &key, &Profile::ALL, Profile::name, &name()?)?),
             "rings" => options.window.rings = value.extract()?,
             "radius" => options.window.radius = value.extract()?,
             "growth" => options.growth = value.extract()?,

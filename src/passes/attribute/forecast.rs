@@ -3,6 +3,7 @@
 use super::around::Around;
 use super::octahedron::{Octahedron, project};
 use super::rows::Rows;
+use crate::bitstream::mixer::Mixing;
 use crate::bitstream::mixture::Mixture;
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::residual::{Expectation, NUM_KINDS, ResidualModel};
@@ -91,7 +92,7 @@ pub(super) struct Scratch {
 }
 
 impl NumberModels {
-    pub(super) fn new(flavour: Flavour, range: [i32; 2]) -> Self {
+    pub(super) fn new(flavour: Flavour, range: [i32; 2], mixing: Mixing) -> Self {
         let filters = || std::array::from_fn(|_| Filter::new(FIRST_WEIGHTS));
         Self {
             flavour,
@@ -99,7 +100,7 @@ impl NumberModels {
             filters: (0..NUM_CLASSES).map(|_| filters()).collect(),
             scales: [ScaleModel::new(FIRST_SCALES); NUM_PLACES],
             trust: [[FIRST_TRUST; TRUST_LEVELS]; NUM_PLACES],
-            residuals: ResidualModel::new(),
+            residuals: ResidualModel::new(mixing),
             mirrored: 0.0,
         }
     }

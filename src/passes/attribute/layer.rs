@@ -5,7 +5,7 @@ use super::declaration::{Coding, Declaration};
 use super::forecast::{Flavour, NumberModels, Scratch};
 use super::octahedron::Octahedron;
 use super::rows::Rows;
-use crate::bitstream::mixer::{MixedBit, PlainBits};
+use crate::bitstream::mixer::{MixedBit, Mixing, PlainBits};
 use crate::bitstream::range_coder::BitCoder;
 use crate::bitstream::tables::Tables;
 use crate::lanes::Lanes;
@@ -119,7 +119,7 @@ impl Wanted<'_> {
 }
 
 impl Layer {
-    pub(crate) fn new(declaration: &Declaration) -> Self {
+    pub(crate) fn new(declaration: &Declaration, mixing: Mixing) -> Self {
         let is_color = matches!(declaration.semantic, Semantic::Color(_));
         let flavour = match (&declaration.coding, declaration.semantic) {
             (Coding::Octahedral { bits }, _) => Flavour::Normal(Octahedron::new(*bits)),
@@ -134,12 +134,13 @@ impl Layer {
             models: Models {
                 missing: PlainBits::new(3),
                 repeated: MixedBit::new(
+                    mixing,
                     [2 * 64 * MAX_REPEATED, 2 * 64 * MAX_REPEATED, 16 * MAX_REPEATED],
                     6,
                     0.4,
                     255,
                 ),
-                numbers: NumberModels::new(flavour, declaration.channel_range()),
+                numbers: NumberModels::new(flavour, declaration.channel_range(), mixing),
                 symbols: PlainBits::new(1 << MODELLED_BITS),
                 inherited: PlainBits::new(14),
                 has_seam: PlainBits::new(8),
