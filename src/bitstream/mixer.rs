@@ -149,7 +149,7 @@ impl<const C: usize> MixedBit<C> {
         }));
         let specialists = (mixing == Mixing::Specialised).then(|| {
             let num_slots = sizes.iter().take(specialists::MOST).sum();
-            Specialists::new(num_slots, weights)
+            Specialists::new(num_slots, weights, limit)
         });
         Self {
             counters: vec![Counter::new(); total],
@@ -180,9 +180,9 @@ impl<const C: usize> MixedBit<C> {
             slots[i] = self.starts[i] + contexts[i];
             inputs[1 + i] = tables.stretch(self.counters[slots[i]].p12());
         }
-        if self.specialists.is_some() {
+        if let Some(specialists) = &self.specialists {
             for i in 0..C {
-                inputs[1 + i] *= Specialists::say(self.counters[slots[i]].age());
+                inputs[1 + i] *= specialists.say(self.counters[slots[i]].age());
             }
         }
         inputs[1 + C..1 + C + D].copy_from_slice(&direct);
@@ -191,13 +191,13 @@ impl<const C: usize> MixedBit<C> {
         let set = &mut self.sets[set];
         let log_odds = set.log_odds(&inputs);
         let p1 = tables.squash(log_odds);
-        let opinion = self.specialists.as_mut().map(|s| s.judge(tables, slots, &inputs, log_odds));
+        let opinion = self.specialists.as_mut().map(|s| s.judge(tables, &slots, &inputs, log_odds));
 
         let bit = coder.code(bit, opinion.as_ref().map_or(p1, |opinion| opinion.p));
 
         set.learn(&inputs, p1, bit, 1.0);
         if let (Some(specialists), Some(opinion)) = (&mut self.specialists, &opinion) {
-            specialists.learn::<C>(&inputs, opinion, bit);
+            specialists.learn(&inputs, opinion, bit);
         }
         for slot in slots {
             self.counters[slot].update(bit, self.limit);

@@ -27,16 +27,6 @@ const LAST_PLACE: f32 = 15.99;
 const FIRST_AGE: u32 = 12;
 const OLDEST_AGE: u32 = 250;
 
-static SAY: [f32; 1024] = {
-    let mut table = [0.0; 1024];
-    let mut age = 0;
-    while age < 1024 {
-        table[age] = (age as f32 + 1.0) / (age as f32 + CAUTION);
-        age += 1;
-    }
-    table
-};
-
 /// No bit has come with this value of a context.
 const NONE: u32 = u32::MAX;
 
@@ -47,6 +37,8 @@ pub(super) struct Specialists {
     of_slot: Vec<u32>,
     list: Vec<Specialist>,
     first: Specialist,
+    /// What a counter of each age counts.
+    say: Vec<f32>,
 }
 
 #[derive(Clone, Copy)]
@@ -59,6 +51,7 @@ struct Specialist {
 
 /// What the specialists of up to [`MOST`] contexts say of a bit.
 pub(super) struct Opinion {
+    n: usize,
     specialists: [usize; MOST],
     /// Probability of a one by the weights of each.
     by_own: [u32; MOST],
@@ -69,34 +62,36 @@ pub(super) struct Opinion {
 }
 
 impl Specialists {
-    pub(super) fn new(num_slots: usize, weights: [Lanes; 2]) -> Self {
+    #[inline(never)]
+    pub(super) fn new(num_slots: usize, weights: [Lanes; 2], oldest_counter: u32) -> Self {
         let tables = Tables::get();
         let corrections = std::array::from_fn(|i| {
             let log_odds = (i as f32 - (STEPS / 2) as f32) * WIDTH;
             Counter::aged(tables.squash(log_odds), FIRST_AGE)
         });
         let first = Specialist { own: WeightSet { weights, seen: 0 }, corrections };
-        Self { of_slot: vec![NONE; num_slots], list: Vec::new(), first }
+        let say = (0..=oldest_counter).map(|age| (age as f32 + 1.0) / (age as f32 + CAUTION)).collect();
+        Self { of_slot: vec![NONE; num_slots], list: Vec::new(), first, say }
     }
 
     /// What a counter of this age counts: little as long as it is young.
     #[inline]
-    pub(super) fn say(age: u32) -> f32 {
-        SAY[age as usize]
+    pub(super) fn say(&self, age: u32) -> f32 {
+        self.say[age as usize]
     }
 
     /// Their opinion where the weights of a set say `by_set`; `slots` are those of all contexts.
     #[inline(never)]
-    pub(super) fn judge<const C: usize>(
+    pub(super) fn judge(
         &mut self,
         tables: &Tables,
-        slots: [usize; C],
+        slots: &[usize],
         inputs: &[Lanes; 2],
         by_set: f32,
     ) -> Opinion {
-        let n = C.min(MOST);
+        let n = slots.len().min(MOST);
         let (mut specialists, mut by_own) = ([0; MOST], [0; MOST]);
-        for (specialist, slot) in specialists[..n].iter_mut().zip(slots) {
+        for (specialist, &slot) in specialists[..n].iter_mut().zip(slots) {
             let entry = &mut self.of_slot[slot];
             if *entry == NONE {
                 *entry = self.list.len() as u32;
@@ -121,13 +116,12 @@ impl Specialists {
             sum += low + (high - low) * above_share;
         }
         let p = ((sum / n as f32) as u32).clamp(24, PROBABILITY_ONE - 24);
-        Opinion { specialists, by_own, nearest: below + usize::from(above_share > 0.5), p }
+        Opinion { n, specialists, by_own, nearest: below + usize::from(above_share > 0.5), p }
     }
 
     #[inline(never)]
-    pub(super) fn learn<const C: usize>(&mut self, inputs: &[Lanes; 2], opinion: &Opinion, bit: bool) {
-        let n = C.min(MOST);
-        for (&i, p) in opinion.specialists[..n].iter().zip(opinion.by_own) {
+    pub(super) fn learn(&mut self, inputs: &[Lanes; 2], opinion: &Opinion, bit: bool) {
+        for (&i, p) in opinion.specialists[..opinion.n].iter().zip(opinion.by_own) {
             let specialist = &mut self.list[i];
             specialist.own.learn(inputs, p, bit, EAGERNESS);
             specialist.corrections[opinion.nearest].update(bit, OLDEST_AGE);
