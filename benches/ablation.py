@@ -24,6 +24,7 @@ TARGET = ROOT / "target" / "ablation"
 SHARES = [0.05, 0.1, 0.2, 0.5]
 
 GUESS = "src/passes/guess.rs"
+SPECIALISTS = "src/bitstream/specialists.rs"
 PARTITION = "src/partition.rs"
 THINNING = "src/thinning.rs"
 # What is switched off: file, words, other words.
@@ -54,6 +55,14 @@ PARTS = {
     "Residuals: the density as an input of the mixers": [
         ("src/bitstream/residual.rs", r"\[tables\.stretch_real\([^\]]*\)\]", "[]"),
     ],
+    "Mixing: what size adds, by max": [
+        ("src/profile.rs", r"Profile::Max => Mixing::Specialised", "Profile::Max => Mixing::Plain"),
+    ],
+    "Mixing: in max, weights of each value of a context": [(SPECIALISTS, r"SHARE: f32 = .*;", "SHARE: f32 = 0.0;")],
+    "Mixing: in max, corrections behind": [
+        (SPECIALISTS, r"\(\(sum / n as f32\) as u32\)", "{ let _ = sum; tables.squash(together) }"),
+    ],
+    "Mixing: in max, young counters weakened": [(SPECIALISTS, r"CAUTION: f32 = .*;", "CAUTION: f32 = 1.0;")],
     "Residuals: contexts of the neighbourhood beside it": [
         ("src/passes/coordinates.rs", r"contexts: \[\n[^\]]*\]", "contexts: [0, 0]"),
         ("src/passes/coordinates.rs", r"sign: 2 \* class \+ usize::from\(guess\.leans_down\)", "sign: 0"),

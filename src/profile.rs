@@ -13,7 +13,8 @@ pub enum Profile {
     /// Packed bits and symbols, compressed with zstd: larger, and several times as fast to decode. Needs the
     /// feature `fast` on both sides.
     Fast = 1,
-    /// As [`Small`](Self::Small) with larger models: the smallest streams, which take XX times as long to decode.
+    /// As [`Small`](Self::Small) with larger models: the smallest streams, half a percent to 1 % smaller, which take 1.3 to
+    /// 1.5 times as long to decode.
     Max = 2,
 }
 

@@ -94,11 +94,12 @@ pub struct Encode {
     #[arg(long, value_name = "AIM", verbatim_doc_comment)]
     #[arg(default_value = EncodeOptions::default().optimize.name(), value_parser = optimize_parser())]
     pub optimize: Optimize,
-    /// How the passes are coded; all decode to the same meshes, but that `--optimize size` is never in one piece with
-    /// fast. [default: small, with --optimize size max]
+    /// How the passes are coded. Default: max with `--optimize size`, else small.
     ///
-    /// - max: arithmetic coding with the largest models, which decodes at half the speed of small
-    /// - small: arithmetic coding, a stream 0.5 to 1.5 % larger than with max
+    /// All decode to the same meshes, but that `--optimize size` never makes one piece with fast.
+    ///
+    /// - max: arithmetic coding with the largest models, which takes 1.3 to 1.5 times as long to decode as small
+    /// - small: arithmetic coding, a stream half a percent to 1 % larger than with max
     /// - fast: zstd, a stream 1.2 to 1.7 times as large that decodes three to five times as fast
     #[arg(long, value_name = "NAME", verbatim_doc_comment)]
     #[arg(value_parser = profile_parser())]
