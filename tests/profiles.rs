@@ -8,7 +8,10 @@ use common::chunks;
 use common::exact::assert_round_trip;
 use common::kinds::every_kind;
 use common::*;
-use lwc::{DecodeError, Decoder, EncodeOptions, Limits, Optimize, Partition, Profile, Step, TriMesh, encode};
+use lwc::{
+    DecodeError, Decoder, EncodeOptions, Limits, Optimize, Partition, Profile, Step, TriMesh, encode,
+    encode_with_attributes,
+};
 
 fn stream(mesh: &TriMesh, profile: Profile, partition: Partition) -> Vec<u8> {
     let mut options = EncodeOptions::default();
@@ -108,6 +111,29 @@ fn only_the_size_of_the_file_asks_for_max() {
         for wanted in Profile::ALL {
             assert_eq!(profile(optimize, Some(wanted)), wanted);
         }
+    }
+}
+
+/// The profile is that of the header, wherever the declarations stand.
+#[test]
+fn declarations_may_stand_before_the_header() {
+    let mesh = noisy(sphere(2), 9, 0.02);
+    for profile in Profile::ALL {
+        let mut options = EncodeOptions::default();
+        options.profile = Some(profile);
+        let colours = attributed::all(vec![attributed::colours(&mesh)]);
+        let stream = encode_with_attributes(&mesh, &colours, &options, &|_| {}).unwrap().bytes;
+        let decoded = |stream: &[u8]| {
+            let mut decoder = Decoder::new(Limits::default());
+            decoder.push(stream).unwrap();
+            assert!(decoder.is_complete());
+            (decoder.mesh().unwrap().checksum(), decoder.attribute_checksum())
+        };
+        let mut chunks = chunks::split(&stream);
+        let at = chunks.iter().position(|chunk| chunk.kind == b'd').unwrap();
+        assert_eq!((at, chunks[0].kind), (1, b'H'));
+        chunks.swap(0, 1);
+        assert_eq!(decoded(&chunks::join(&chunks)), decoded(&stream), "{}", profile.name());
     }
 }
 

@@ -88,6 +88,8 @@ pub struct Decoder {
     /// Kinds of the chunks that must come before the next pass, or behind the last: what belongs to the
     /// passes that are done.
     awaited: VecDeque<u8>,
+    /// Until the table of passes.
+    declarations: Option<Declarations>,
     attributes: Option<AttributeDecoder>,
     /// A chunk of attributes that is half done.
     running_attributes: Option<Chunk>,
@@ -121,6 +123,7 @@ impl Decoder {
             passes: PassDecoder::new(Profile::default().mixing()),
             running: None,
             awaited: VecDeque::new(),
+            declarations: None,
             attributes: None,
             running_attributes: None,
             extras: Extras::default(),
@@ -268,10 +271,10 @@ impl Decoder {
                 }
                 (kind::PASSES, Some(Header { grid, .. })) => {
                     let none = Declarations::default();
-                    let declared = self.attributes.as_ref().map_or(&none, |a| &a.declarations);
+                    let declared = self.declarations.as_ref().unwrap_or(&none);
                     let passes = frame::list_passes(payload, grid, self.frames.position(), &declared.bytes);
                     let mut passes = passes.map_err(|e| malformed(e.0))?;
-                    if self.attributes.is_some() {
+                    if self.declarations.is_some() {
                         attributes::check_density(declared, &passes).map_err(malformed)?;
                     }
                     if let Some(payload) = self.compensation.take() {
@@ -291,13 +294,15 @@ impl Decoder {
                         trailing,
                         scene: self.scene.take(),
                     });
+                    if ASSETS && let Some(declarations) = self.declarations.take() {
+                        self.attributes = Some(AttributeDecoder::new(declarations, profile.mixing()));
+                    }
                 }
-                (kind::DECLARATIONS, _) if ASSETS && self.attributes.is_none() => {
+                (kind::DECLARATIONS, _) if ASSETS && self.declarations.is_none() => {
                     let needed = 2 * payload.len() as u64 + self.frames.buffered() as u64;
                     Limits::check("memory", needed, self.limits.max_memory)?;
-                    let declared =
-                        Declarations::read(payload).ok_or(malformed("declarations of attributes"))?;
-                    self.attributes = Some(AttributeDecoder::new(declared, self.profile.mixing()));
+                    let declared = Declarations::read(payload);
+                    self.declarations = Some(declared.ok_or(malformed("declarations of attributes"))?);
                 }
                 (kind::DECLARATIONS, _) if ASSETS => return Err(out_of_order(&chunk)),
                 (kind::COMPENSATION, _) if self.compensation.is_none() => {

@@ -8,8 +8,18 @@ use std::fmt::Write;
 
 /// RMS over the diagonal for which bits are told.
 const ERRORS: [f64; 4] = [2e-3, 1e-3, 5e-4, 2e-4];
-const COLOURS: [[u8; 3]; 6] =
-    [[38, 100, 150], [210, 120, 30], [60, 140, 70], [150, 60, 140], [120, 120, 120], [180, 40, 50]];
+const COLOURS: [[u8; 3]; 10] = [
+    [38, 100, 150],
+    [210, 120, 30],
+    [60, 140, 70],
+    [150, 60, 140],
+    [120, 120, 120],
+    [180, 40, 50],
+    [50, 170, 190],
+    [30, 30, 30],
+    [130, 90, 50],
+    [230, 130, 180],
+];
 
 pub fn write(rows: &[Row], args: &Args) -> anyhow::Result<()> {
     let mut text = head(args);

@@ -136,7 +136,7 @@ typedef struct LwcEncodeOptions {
   uint32_t color_bits;
   // Bits of a component of any other attribute, 1 to 30.
   uint32_t generic_bits;
-  // How the passes are coded, "small" or "fast"; null for the default.
+  // How the passes are coded, "max", "small" or "fast"; null for max where `optimize` is "size", else small.
   const char *profile;
   // Time that may be spent, 0 to 9.
   uint32_t effort;
