@@ -8,7 +8,7 @@ use crate::lanes::Lanes;
 use std::hint::black_box;
 
 /// Inputs of every mixer: contexts, direct inputs and the bias together. Two SIMD vectors.
-pub(super) const LANES: usize = 8;
+const LANES: usize = 8;
 
 /// Weight a context starts with.
 const INITIAL_WEIGHT: f32 = 0.35;
@@ -101,12 +101,16 @@ pub(crate) struct MixedBit<const C: usize> {
 /// The weights of all inputs.
 #[derive(Clone, Copy)]
 pub(super) struct WeightSet {
-    pub(super) weights: [Lanes; 2],
+    weights: [Lanes; 2],
     /// Bits it has seen.
-    pub(super) seen: u32,
+    seen: u32,
 }
 
 impl WeightSet {
+    fn new(weights: [Lanes; 2]) -> Self {
+        Self { weights, seen: 0 }
+    }
+
     /// Log-odds of a one.
     #[inline(always)]
     pub(super) fn log_odds(&self, inputs: &[Lanes; 2]) -> f32 {
@@ -147,15 +151,16 @@ impl<const C: usize> MixedBit<C> {
             i if i <= C => initial_weight,
             _ => direct,
         }));
+        let first = WeightSet::new(weights);
         let specialists = (mixing == Mixing::Specialised).then(|| {
             let num_slots = sizes.iter().take(specialists::MOST).sum();
-            Specialists::new(num_slots, weights, limit)
+            Specialists::new(num_slots, first, limit)
         });
         Self {
             counters: vec![Counter::new(); total],
             starts,
             sizes,
-            sets: vec![WeightSet { weights, seen: 0 }; sets],
+            sets: vec![first; sets],
             limit,
             specialists,
         }
@@ -206,7 +211,7 @@ impl<const C: usize> MixedBit<C> {
     }
 }
 
-pub(super) fn lanes([a, b, c, d, e, f, g, h]: [f32; LANES]) -> [Lanes; 2] {
+fn lanes([a, b, c, d, e, f, g, h]: [f32; LANES]) -> [Lanes; 2] {
     [Lanes([a, b, c, d]), Lanes([e, f, g, h])]
 }
 

@@ -62,14 +62,15 @@ pub(super) struct Opinion {
 }
 
 impl Specialists {
+    /// For `num_slots` values; `own` are the weights they start with, `oldest_counter` is the largest age of a counter.
     #[inline(never)]
-    pub(super) fn new(num_slots: usize, weights: [Lanes; 2], oldest_counter: u32) -> Self {
+    pub(super) fn new(num_slots: usize, own: WeightSet, oldest_counter: u32) -> Self {
         let tables = Tables::get();
         let corrections = std::array::from_fn(|i| {
             let log_odds = (i as f32 - (STEPS / 2) as f32) * WIDTH;
             Counter::aged(tables.squash(log_odds), FIRST_AGE)
         });
-        let first = Specialist { own: WeightSet { weights, seen: 0 }, corrections };
+        let first = Specialist { own, corrections };
         let say = (0..=oldest_counter).map(|age| (age as f32 + 1.0) / (age as f32 + CAUTION)).collect();
         Self { of_slot: vec![NONE; num_slots], list: Vec::new(), first, say }
     }

@@ -37,15 +37,6 @@ const fn bytes_of_models(mixing: Mixing) -> u64 {
     }
 }
 
-/// Bytes of memory that decoding a pass may take, the buffer of the stream not counted.
-pub(super) fn memory_for(pass: &PassInfo, mixing: Mixing) -> u64 {
-    let base = if let Action::Base { .. } = pass.row.action { 160 * u64::from(pass.faces) } else { 0 };
-    bytes_of_models(mixing)
-        + base
-        + BYTES_PER_VERTEX * u64::from(pass.vertices)
-        + BYTES_PER_FACE * u64::from(pass.faces)
-}
-
 /// The parts of the mesh a pass changed.
 pub(super) struct Changes {
     /// First vertex whose position is new or different; all after it are.
@@ -65,6 +56,27 @@ impl PassDecoder {
             refine: RefineModels::new(mixing),
             mixing,
         }
+    }
+
+    /// Bytes of memory that a pass may take, the buffer of the stream not counted.
+    pub(super) fn memory_for(&self, pass: &PassInfo) -> u64 {
+        let base = if let Action::Base { .. } = pass.row.action { 160 * u64::from(pass.faces) } else { 0 };
+        bytes_of_models(self.mixing)
+            + base
+            + BYTES_PER_VERTEX * u64::from(pass.vertices)
+            + BYTES_PER_FACE * u64::from(pass.faces)
+    }
+
+    /// Checks a pass against the limits before anything is allocated for it. `held`: bytes that are taken besides.
+    pub(super) fn check_limits(
+        &self,
+        pass: &PassInfo,
+        limits: &Limits,
+        held: u64,
+    ) -> Result<(), DecodeError> {
+        Limits::check("vertices", u64::from(pass.vertices), u64::from(limits.max_vertices))?;
+        Limits::check("levels", u64::from(pass.level), u64::from(limits.max_levels))?;
+        Limits::check("memory", self.memory_for(pass) + held, limits.max_memory)
     }
 
     /// Goes on with a pass; what it changed, and its patches, once it is over, `None` if the work is used up before.
@@ -142,16 +154,4 @@ impl Changes {
             first_new_face,
         }
     }
-}
-
-/// Checks a pass against the limits before anything is allocated for it. `held`: bytes that are taken besides.
-pub(super) fn check_limits(
-    pass: &PassInfo,
-    mixing: Mixing,
-    limits: &Limits,
-    held: u64,
-) -> Result<(), DecodeError> {
-    Limits::check("vertices", u64::from(pass.vertices), u64::from(limits.max_vertices))?;
-    Limits::check("levels", u64::from(pass.level), u64::from(limits.max_levels))?;
-    Limits::check("memory", memory_for(pass, mixing) + held, limits.max_memory)
 }

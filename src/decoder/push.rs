@@ -4,7 +4,7 @@ use super::assemble::{self, Beside, Extras};
 use super::attributes::{self, AttributeDecoder};
 use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
 use super::level_mesh::LevelMesh;
-use super::passes::{self, PassDecoder};
+use super::passes::PassDecoder;
 use super::running::Running;
 use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
@@ -338,7 +338,7 @@ impl Decoder {
             .as_ref()
             .map(|a| attributes::memory_for(&a.declarations, pass, self.passes.mixing));
         let held = self.frames.buffered() as u64 + attributes.unwrap_or(0);
-        passes::check_limits(pass, self.passes.mixing, &self.limits, held)?;
+        self.passes.check_limits(pass, &self.limits, held)?;
         let running =
             Running::new(payload, pass, self.profile).ok_or(malformed("a pass of other streams"))?;
         self.advance(running, chunk, work)
@@ -435,7 +435,7 @@ impl Decoder {
         if chunk::other_size(payload.len() as u32) != announced {
             return Err(malformed("a chunk differs from its announcement"));
         }
-        let used = self.frames.buffered() as u64 + passes::memory_for(pass, self.passes.mixing);
+        let used = self.frames.buffered() as u64 + self.passes.memory_for(pass);
         let mesh = &self.passes.mesh;
         let beside = Beside { payload, mesh, grid: &info.grid, limits: &self.limits, used };
         match chunk.kind {
@@ -575,8 +575,8 @@ impl Decoder {
             return None;
         }
         // Two copies that take as much again as the mesh itself.
-        let buffered = self.frames.buffered() as u64 + 2 * passes::memory_for(pass, self.passes.mixing);
-        passes::check_limits(pass, self.passes.mixing, &self.limits, buffered).ok()?;
+        let buffered = self.frames.buffered() as u64 + 2 * self.passes.memory_for(pass);
+        self.passes.check_limits(pass, &self.limits, buffered).ok()?;
         let (mesh, patches) = self.passes.mesh_with_cut(pass, payload)?;
         Some((pass, mesh, patches))
     }
