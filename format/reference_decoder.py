@@ -504,11 +504,9 @@ class Mixed:
         x += [0.0] * (8 - len(x))
         weights = self.sets[which]
         s = weights.sum(x)
-        if self.has_specialists:
-            bit = self.specialised(coder, contexts, x, s)
-        else:
-            bit = coder.bit(squash(s))
-        weights.learn(x, squash(s), bit, 1)
+        p = squash(s)
+        bit = self.specialised(coder, contexts, x, s) if self.has_specialists else coder.bit(p)
+        weights.learn(x, p, bit, 1)
         for counters, context in zip(self.counters, contexts):
             counters.learn(context, bit)
         return bit

@@ -2,15 +2,15 @@
 
 use crate::bitstream::mixer::Mixing;
 
-/// What codes the passes after the base mesh. All profiles of a mesh decode to the same meshes, vertex by
-/// vertex and triangle by triangle.
+/// What codes the passes. All profiles of a mesh decode to the same meshes, vertex by vertex and triangle by
+/// triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Profile {
     /// Arithmetic coding with learnt models. The default.
     #[default]
     Small = 0,
-    /// Packed bits and symbols, compressed with zstd: larger, and several times as fast to decode. Needs the
+    /// Packed bits and symbols behind the base mesh, compressed with zstd: larger, and several times as fast to decode. Needs the
     /// feature `fast` on both sides.
     Fast = 1,
     /// As [`Small`](Self::Small) with larger models: the smallest streams, half a percent to 1 % smaller, which take 1.3 to

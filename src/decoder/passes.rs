@@ -22,7 +22,7 @@ pub(super) struct PassDecoder {
     pub(super) connectivity: ConnectivityModels,
     pub(super) coordinates: CoordinateModels,
     pub(super) refine: RefineModels,
-    pub(super) mixing: Mixing,
+    pub(super) profile: Profile,
 }
 
 /// Bytes of memory that a vertex and a face of the finest mesh may take, working space included.
@@ -48,20 +48,21 @@ pub(super) struct Changes {
 }
 
 impl PassDecoder {
-    pub(super) fn new(mixing: Mixing) -> Self {
+    pub(super) fn new(profile: Profile) -> Self {
+        let mixing = profile.mixing();
         Self {
             mesh: GridMesh::default(),
             connectivity: ConnectivityModels::new(mixing),
             coordinates: CoordinateModels::new(mixing),
             refine: RefineModels::new(mixing),
-            mixing,
+            profile,
         }
     }
 
     /// Bytes of memory that a pass may take, the buffer of the stream not counted.
     pub(super) fn memory_for(&self, pass: &PassInfo) -> u64 {
         let base = if let Action::Base { .. } = pass.row.action { 160 * u64::from(pass.faces) } else { 0 };
-        bytes_of_models(self.mixing)
+        bytes_of_models(self.profile.mixing())
             + base
             + BYTES_PER_VERTEX * u64::from(pass.vertices)
             + BYTES_PER_FACE * u64::from(pass.faces)
@@ -123,7 +124,7 @@ impl PassDecoder {
         }
         let mut coder = RangeDecoder::of_cut(payload);
         let mut ahead = self.clone();
-        let mut running = Running::new(payload, pass, Profile::Small)?;
+        let mut running = Running::new(payload, pass, self.profile)?;
         let patches = running.advance_with(&mut ahead, pass, &mut coder, &mut Work::unlimited()).ok()??;
         if pass.kind == PassKind::Refine {
             return Some((ahead.mesh, patches));

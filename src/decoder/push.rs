@@ -78,7 +78,6 @@ pub struct Decoder {
     announced: Option<Announced>,
     scene: Option<SceneTable>,
     materials: Option<GltfMaterials>,
-    profile: Profile,
     info: Option<StreamInfo>,
     /// Passes done.
     done: usize,
@@ -117,10 +116,9 @@ impl Decoder {
             announced: None,
             scene: None,
             materials: None,
-            profile: Profile::default(),
             info: None,
             done: 0,
-            passes: PassDecoder::new(Profile::default().mixing()),
+            passes: PassDecoder::new(Profile::default()),
             running: None,
             awaited: VecDeque::new(),
             declarations: None,
@@ -263,8 +261,9 @@ impl Decoder {
                     let header = Header::read(payload).ok_or(malformed("the header"))?;
                     let profile = Profile::from_code(header.profile).filter(|profile| profile.is_supported());
                     let profile = profile.ok_or_else(|| unsupported_profile(header.profile))?;
-                    self.profile = profile;
-                    self.passes = PassDecoder::new(profile.mixing());
+                    if profile != self.passes.profile {
+                        self.passes = PassDecoder::new(profile);
+                    }
                     let usual = header.is_usual.then_some(Provenance::USUAL);
                     self.provenance = self.provenance.or(usual);
                     self.header = Some(header);
@@ -284,7 +283,7 @@ impl Decoder {
                     let trailing = frame::add_announced(&mut passes, &announced);
                     let trailing = trailing.map_err(|e| malformed(e.0))?;
                     let attributes = declared.list.iter().map(AttributeInfo::of).collect();
-                    let (grid, provenance, profile) = (*grid, self.provenance, self.profile);
+                    let (grid, provenance, profile) = (*grid, self.provenance, self.passes.profile);
                     self.info = Some(StreamInfo {
                         grid,
                         provenance,
@@ -336,11 +335,11 @@ impl Decoder {
         let attributes = self
             .attributes
             .as_ref()
-            .map(|a| attributes::memory_for(&a.declarations, pass, self.passes.mixing));
+            .map(|a| attributes::memory_for(&a.declarations, pass, self.passes.profile.mixing()));
         let held = self.frames.buffered() as u64 + attributes.unwrap_or(0);
         self.passes.check_limits(pass, &self.limits, held)?;
         let running =
-            Running::new(payload, pass, self.profile).ok_or(malformed("a pass of other streams"))?;
+            Running::new(payload, pass, self.passes.profile).ok_or(malformed("a pass of other streams"))?;
         self.advance(running, chunk, work)
     }
 
@@ -567,7 +566,7 @@ impl Decoder {
 
     fn mesh_with_cut(&self) -> Option<(&PassInfo, GridMesh, Patches)> {
         // Streams that are compressed begin to tell only when they are whole.
-        let is_readable = self.running.is_none() && self.profile != Profile::Fast;
+        let is_readable = self.running.is_none() && self.passes.profile != Profile::Fast;
         let pass = self.next_pass().filter(|_| is_readable)?;
         let (kind, payload) = self.frames.cut_chunk(Some(pass.frame()))?;
         // The coder reads four bytes ahead: fewer decide nothing.

@@ -122,7 +122,7 @@ impl Running {
         let (vertices, faces) = (pass.row.vertices as usize, pass.row.faces as usize);
         while work.is_left() {
             self.stage = match std::mem::replace(&mut self.stage, Stage::Over) {
-                Stage::Begin => self.begin(mesh, pass, decoder.mixing, work),
+                Stage::Begin => self.begin(mesh, pass, decoder.profile.mixing(), work),
                 Stage::Base(mut grower) => {
                     if grower.code_some(coder, work)? {
                         work.sweep(faces);

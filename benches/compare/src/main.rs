@@ -34,7 +34,7 @@ pub struct Args {
     #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(4..=16))]
     bits: u32,
     /// Streams of lwc: size, levels (size, but never in one piece), balanced, lazy (the same, but coarse meshes are shown
-    /// with their vertices where they lie), prefix, fast or algorithm1, each also with a descriptor, e.g. algorithm1:nfv.
+    /// with their vertices where they lie), prefix, max, fast or algorithm1, each also with a descriptor, e.g. algorithm1:nfv.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "size,balanced,prefix")]
     variants: Vec<Variant>,
     /// Leave out what needs distances: beginnings and charts.
