@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$0")"
 
-for target in decode split_independent round_trip range_coder read_obj read_ply read_stl read_gltf read_las; do
+for target in decode rearrange split_independent round_trip range_coder read_obj read_ply read_stl read_gltf read_las; do
     mkdir -p "corpus/$target"
 done
 
@@ -21,6 +21,9 @@ for stream in ../format/golden/*.lwc ../format/golden/fast/*.lwc; do
     { printf '\002\013\007\001\004\004\000\003\002\000\000\000\003\001\040\040\020\040'; cat "$stream"; } \
         > "corpus/decode/$name-made-up-fast"
     { printf '\001\002\003\004\005\006\007\010\001'; cat "$stream"; } > "corpus/split_independent/$name"
+    # No change; a chunk moved, one doubled, one left out.
+    { printf '\000'; cat "$stream"; } > "corpus/rearrange/$name-as-is"
+    { printf '\003\000\005\003\001\004\006\002\007\000'; cat "$stream"; } > "corpus/rearrange/$name-changed"
     cp "$stream" "corpus/round_trip/$name"
     cp "$stream" "corpus/range_coder/$name"
 done
@@ -50,6 +53,20 @@ for cloud in ../tests/data/*.la[sz]; do
     done
 done
 
+# Streams and files that went wrong once.
+if [ -n "${LWC_CASES:-}" ]; then
+    for stream in "$LWC_CASES"/attack/*.lwc; do
+        { printf '\000'; cat "$stream"; } > "corpus/decode/case-$(basename "$stream")"
+        { printf '\000'; cat "$stream"; } > "corpus/rearrange/case-$(basename "$stream")"
+    done
+    cp "$LWC_CASES"/*.obj corpus/read_obj/
+    cp "$LWC_CASES"/*.ply corpus/read_ply/
+    cp "$LWC_CASES"/*.stl corpus/read_stl/
+    cp "$LWC_CASES"/*.glb corpus/read_gltf/
+    for cloud in "$LWC_CASES"/*.las; do
+        { printf '\000'; cat "$cloud"; } > "corpus/read_las/case-$(basename "$cloud")"
+    done
+fi
 if [ -n "${LWC_CORPUS:-}" ]; then
     cp "$LWC_CORPUS"/bad/*.obj corpus/read_obj/
     cp "$LWC_CORPUS"/bad/*.ply corpus/read_ply/

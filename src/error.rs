@@ -40,6 +40,10 @@ pub enum DecodeError {
         /// What [`Limits`](crate::Limits) allow.
         allowed: u64,
     },
+    /// The thread computes in another way than the format asks for: the stream may be sound. Holds what is done
+    /// otherwise.
+    #[error("this thread's floating-point environment is not the default: {0}")]
+    FloatingPoint(&'static str),
     /// The decoder has failed before and takes no more bytes.
     #[error("the decoder has failed already")]
     Failed,
@@ -80,6 +84,10 @@ pub enum EncodeError {
     /// The descriptor cannot see the attributes.
     #[error("{0}")]
     DescriptorAttributes(String),
+    /// The thread computes in another way than the format asks for, so a decoder elsewhere would not follow. Holds what is
+    /// done otherwise.
+    #[error("this thread's floating-point environment is not the default: {0}")]
+    FloatingPoint(&'static str),
     /// The coordinates span more than double precision can hold.
     #[error("the bounding box of the mesh overflows double precision")]
     BoundingBox,

@@ -1,6 +1,7 @@
 //! Chunks `n` and `m` (`format/SPEC.md`, sections 4.6 and 4.7): the meshes of a scene and where they stand; how
 //! materials look.
 
+use crate::bitstream::budget::Budget;
 use crate::bitstream::bytes::Reader;
 #[cfg(any(feature = "encoder", test))]
 use crate::bitstream::bytes::write_varint;
@@ -11,18 +12,24 @@ const MOVED: u8 = 1;
 const SINGLE: u8 = 2;
 const DOUBLE: u8 = 3;
 
-/// `None` if the payload breaks a rule.
-pub(crate) fn read(payload: &[u8]) -> Option<SceneTable> {
+/// Memory that a mesh of a scene takes once it stands alone: its arrays' heads and a share of its attributes.
+const BYTES_PER_MESH: usize = 512;
+/// Fewest bytes of an instance: mesh, length of the name, form.
+const MIN_INSTANCE: usize = 3;
+
+/// `None` if the payload breaks a rule or the memory is used up.
+pub(crate) fn read(payload: &[u8], budget: &mut Budget) -> Option<SceneTable> {
     let mut reader = Reader::new(payload);
-    // Each mesh has a byte, each instance several: counts are as small as the payload.
     let num_meshes = reader.varint()? as usize;
-    let exponents: Vec<i8> = reader.take(num_meshes)?.iter().map(|&byte| byte as i8).collect();
-    let num_instances = reader.varint()?;
-    let mut instances = Vec::new();
+    let exponents = reader.take(num_meshes)?;
+    budget.take(num_meshes, BYTES_PER_MESH)?;
+    let exponents: Vec<i8> = exponents.iter().map(|&byte| byte as i8).collect();
+    let num_instances = reader.count(MIN_INSTANCE)?;
+    budget.take(num_instances, size_of::<Instance>())?;
+    let mut instances = Vec::with_capacity(num_instances);
     for _ in 0..num_instances {
         let mesh = reader.varint()? as usize;
-        let length = reader.varint()? as usize;
-        let name = std::str::from_utf8(reader.take(length)?).ok()?.to_owned();
+        let name = reader.string(budget)?;
         let mut transform = IDENTITY;
         let mut entries = transform.iter_mut().flatten();
         match reader.u8()? {
@@ -79,18 +86,20 @@ fn single(reader: &mut Reader, entry: &mut f64) -> Option<()> {
     Some(())
 }
 
-/// `None` if the payload breaks a rule.
-pub(crate) fn read_materials(payload: &[u8]) -> Option<GltfMaterials> {
+/// `None` if the payload breaks a rule or the memory is used up.
+pub(crate) fn read_materials(payload: &[u8], budget: &mut Budget) -> Option<GltfMaterials> {
     let mut reader = Reader::new(payload);
-    let mut materials = GltfMaterials::default();
-    let length = reader.varint()? as usize;
-    materials.json = std::str::from_utf8(reader.take(length)?).ok()?.to_owned();
-    let num_images = reader.varint()?;
+    let json = reader.string(budget)?;
+    let num_images = reader.count(1)?;
+    budget.take(num_images, size_of::<Vec<u8>>())?;
+    let mut images = Vec::with_capacity(num_images);
     for _ in 0..num_images {
         let length = reader.varint()? as usize;
-        materials.images.push(reader.take(length)?.to_vec());
+        let image = reader.take(length)?;
+        budget.take(length, 1)?;
+        images.push(image.to_vec());
     }
-    reader.is_empty().then_some(materials)
+    reader.is_empty().then_some(GltfMaterials { json, images })
 }
 
 #[cfg(any(feature = "encoder", test))]
@@ -108,7 +117,15 @@ pub(crate) fn write_materials(materials: &GltfMaterials) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{read as read_within, read_materials as read_materials_within, *};
+
+    fn read(payload: &[u8]) -> Option<SceneTable> {
+        read_within(payload, &mut Budget::new(0, u64::MAX))
+    }
+
+    fn read_materials(payload: &[u8]) -> Option<GltfMaterials> {
+        read_materials_within(payload, &mut Budget::new(0, u64::MAX))
+    }
 
     fn table() -> SceneTable {
         let place = |mesh, name: &str, transform| Instance { mesh, name: name.into(), transform };
@@ -152,5 +169,21 @@ mod tests {
         assert_eq!(read_materials(&bytes), Some(materials));
         assert!((0..bytes.len()).all(|end| read_materials(&bytes[..end]).is_none()));
         assert_eq!(read_materials(&[1, 0xff, 0]), None, "no text");
+    }
+
+    #[test]
+    fn memory_is_counted_before_it_is_taken() {
+        // Three bytes for an instance, one for an image.
+        let instances = [&[1, 0, 0xe8, 0x07][..], &[0; 3000]].concat();
+        let images = [&[0, 0xe8, 0x07][..], &[0; 1000]].concat();
+        for (max_memory, is_enough) in [(200_000, true), (20_000, false)] {
+            let mut budget = Budget::new(0, max_memory);
+            assert_eq!(read_within(&instances, &mut budget).is_some(), is_enough);
+            assert_eq!(budget.exceeded().is_none(), is_enough);
+            let mut budget = Budget::new(0, max_memory);
+            assert_eq!(read_materials_within(&images, &mut budget).is_some(), is_enough);
+            assert_eq!(budget.exceeded().is_none(), is_enough);
+        }
+        assert_eq!(read(&[0, 0xff, 0xff, 0xff, 0xff, 0x0f]), None, "more than the bytes could hold");
     }
 }

@@ -220,7 +220,7 @@ fn obj_corners_groups_and_colours_are_kept() {
     let file = obj(RICH).unwrap();
     assert_eq!(names(&file), ["v.rgb", "vt", "vn", "usemtl", "g", "o", "s"]);
     assert_eq!(file.report.ignored, [""; 0]);
-    assert_eq!(file.attributes.material_libraries, ["a.mtl", "two words.mtl"]);
+    assert_eq!(file.attributes.material_libraries[..], ["a.mtl", "two words.mtl"]);
     let none = NO_ROW;
 
     let colour = named(&file, "v.rgb");

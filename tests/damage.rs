@@ -493,17 +493,20 @@ fn claims_that_match_the_size_are_held_to_the_limits() {
     let stream = claim_with(0);
     let mut announced = stream[..stream.len() - 2].to_vec();
     assert_eq!(announced.last(), Some(&b'B'));
-    let (decoder, error) = decode_all(&announced, Limits::default(), "not there yet");
+    // Whatever work that would be.
+    let default = Limits { max_work: Some(u64::MAX), ..Limits::default() };
+    let small = Limits { max_work: Some(u64::MAX), ..Limits::small() };
+    let (decoder, error) = decode_all(&announced, default, "not there yet");
     assert_eq!((error, decoder.passes_done()), (None, 0));
     assert_eq!(decoder.info().unwrap().passes()[0].vertices, 30_000_000);
     announced.extend([0; 999_999]);
-    let (_, error) = decode_all(&announced, Limits::small(), "not there yet");
+    let (_, error) = decode_all(&announced, small, "not there yet");
     assert_eq!(error, None);
 
     let whole = claim_with(1_000_000);
-    let (_, error) = decode_all(&whole, Limits::small(), "too many vertices");
+    let (_, error) = decode_all(&whole, small, "too many vertices");
     assert!(matches!(error, Some(DecodeError::Limit { what: "vertices", .. })), "{error:?}");
-    let limits = Limits { max_vertices: u32::MAX, ..Limits::small() };
+    let limits = Limits { max_vertices: u32::MAX, ..small };
     let (_, error) = decode_all(&whole, limits, "too much memory");
     assert!(matches!(error, Some(DecodeError::Limit { what: "memory", .. })), "{error:?}");
 }
@@ -569,4 +572,50 @@ fn errors_do_not_depend_on_the_cuts() {
         let checksums = [&whole, &decoder].map(|d| d.mesh().map(|m| m.checksum()));
         assert_eq!(checksums[0], checksums[1], "round {round}, chunk {place}");
     }
+}
+
+#[test]
+fn work_beyond_the_limit_is_refused_at_the_table_or_where_it_is_met() {
+    for (name, stream) in streams() {
+        let clean = Clean::of(&stream);
+        let with = |max_work| Limits { max_work: Some(max_work), ..Limits::default() };
+        let (whole, error) = decode_all(&stream, with(u64::MAX), name);
+        assert_eq!(error, None, "{name}");
+        let done = whole.work_done();
+        // What the table forecasts is a bound on what is done.
+        for allowed in [0, 1, done / 2, done - 1] {
+            let (decoder, error) = decode_all(&stream, with(allowed), name);
+            let Some(DecodeError::Limit { what: "work", needed, allowed: told }) = error else {
+                panic!("{name}, {allowed} of {done}: {error:?}");
+            };
+            assert!(told == allowed && needed > allowed, "{name}: {needed} of {allowed}");
+            let passes = decoder.passes_done();
+            assert_eq!(decoder.mesh().map(|m| m.checksum()), clean.checksum(passes), "{name}");
+            assert!(decoder.work_done() <= allowed, "{name}: {} of {allowed}", decoder.work_done());
+        }
+    }
+}
+
+/// A base mesh of many triangles in few bytes, and splits of one vertex that walk all of them.
+#[test]
+fn splits_that_cost_more_than_their_bytes_earn_are_refused() {
+    let base: (&[u32], u32) = (&[12, 40_401, 80_000], 6000);
+    let with = |split: &[u32], bytes, count| {
+        let mut rows = vec![base];
+        rows.extend(std::iter::repeat_n((split, bytes), count));
+        claim(12, &rows, usize::MAX)
+    };
+    for (split, bytes, count) in
+        [(&[1, 1][..], 12, 128), (&[1, 0], 60, 30), (&[64, 0], 9, 4096), (&[1, 1], 12, 4)]
+    {
+        let stream = with(split, bytes, count);
+        let (decoder, error) = decode_all(&stream, Limits::default(), "splits of one vertex");
+        assert!(matches!(error, Some(DecodeError::Limit { what: "work", .. })), "{error:?}");
+        assert_eq!((decoder.passes_done(), decoder.work_done()), (0, 0), "{count} splits");
+        // Nothing is decoded for what a stream says of itself.
+        assert_eq!(StreamInfo::read(&stream).unwrap().unwrap().passes().len(), count + 1);
+    }
+    // Bytes that are there earn it.
+    let (_, error) = decode_all(&with(&[10_000, 0], 20_000, 3), Limits::default(), "large splits");
+    assert!(matches!(error, Some(DecodeError::Malformed { .. })), "{error:?}");
 }

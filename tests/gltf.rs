@@ -367,7 +367,7 @@ fn a_stream_holds_a_scene() {
     let mut decoder = lwc::Decoder::new(lwc::Limits::default());
     decoder.push(&encoded.bytes).unwrap();
     let (mesh, attributes) = decoder.to_tri_mesh_with_attributes().unwrap();
-    let again = io::Scene::unpack(&mesh, &attributes).unwrap();
+    let again = io::Scene::unpack(&mesh, &attributes).unwrap().unwrap();
     assert_eq!(again.instances, scene.instances);
     assert_eq!(again.gltf_materials, scene.gltf_materials);
     let sorted = |file: &MeshFile| {

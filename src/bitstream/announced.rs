@@ -9,6 +9,17 @@ use super::header::MAX_PASSES;
 /// Most chunks behind the last pass.
 const MAX_TRAILING: usize = 16;
 
+/// Chunks refer to those of earlier stages: to what lies loose, then the order to all. Others refer to none, and stand
+/// anywhere.
+fn stage(kind: u8) -> Option<u8> {
+    match kind {
+        kind::LOOSE => Some(0),
+        kind::EXACT | kind::VALUES => Some(1),
+        kind::ORDER => Some(2),
+        _ => None,
+    }
+}
+
 /// Payloads of chunks to come.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Announced {
@@ -35,7 +46,9 @@ impl Announced {
             let (kind, bytes) = (reader.u8()?, reader.varint()?);
             let is_known_twice = announced.trailing.iter().any(|&(other, _)| other == kind);
             let may_trail = !kind::is_critical(kind) && !kind::is_known_elsewhere(kind);
-            if is_known_twice || !may_trail || announced.trailing.len() == MAX_TRAILING {
+            let is_before = |own| announced.trailing.iter().any(|&(other, _)| stage(other) > Some(own));
+            let is_late = stage(kind).is_some_and(is_before);
+            if is_known_twice || is_late || !may_trail || announced.trailing.len() == MAX_TRAILING {
                 return None;
             }
             announced.trailing.push((kind, bytes));
@@ -67,6 +80,19 @@ impl Announced {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn chunks_that_refer_to_others_come_behind_them() {
+        let read = |kinds: &[u8]| {
+            Announced::read(&[&[0][..], &kinds.iter().flat_map(|&k| [k, 1]).collect::<Vec<_>>()].concat())
+        };
+        for sound in ["ixvo", "ivxo", "vx", "io", "mixo", "zimxvo", "o"] {
+            assert!(read(sound.as_bytes()).is_some(), "{sound}");
+        }
+        for late in ["xi", "vi", "oi", "ox", "ov", "ixov", "xvi", "mox", "ozv"] {
+            assert!(read(late.as_bytes()).is_none(), "{late}");
+        }
+    }
 
     #[test]
     fn announcements_return_and_lies_are_refused() {

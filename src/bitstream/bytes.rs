@@ -1,5 +1,6 @@
 //! Numbers in bytes, little-endian; variable-length ones as LEB128 (`format/SPEC.md`, section 2).
 
+use super::budget::Budget;
 use byteorder::{ByteOrder, LittleEndian};
 
 /// Reads a payload front to back. `None` means that it ends too early or breaks a rule.
@@ -51,6 +52,32 @@ impl<'a> Reader<'a> {
             }
         }
         None
+    }
+}
+
+impl Reader<'_> {
+    /// A `varint` that counts things of which each takes `min_bytes` at least: no more than the rest could hold.
+    pub(crate) fn count(&mut self, min_bytes: usize) -> Option<usize> {
+        let count = self.varint()? as usize;
+        (count <= self.len() / min_bytes).then_some(count)
+    }
+
+    /// A string, the memory for its bytes taken from `budget`.
+    pub(crate) fn string(&mut self, budget: &mut Budget) -> Option<String> {
+        let length = self.varint()? as usize;
+        let text = std::str::from_utf8(self.take(length)?).ok()?;
+        budget.take(length, 1)?;
+        Some(text.to_owned())
+    }
+
+    /// So many strings, the memory for them taken from `budget`.
+    pub(crate) fn strings(&mut self, count: usize, budget: &mut Budget) -> Option<Vec<String>> {
+        budget.take(count.min(self.len()), size_of::<String>())?;
+        let mut strings = Vec::with_capacity(count.min(self.len()));
+        for _ in 0..count {
+            strings.push(self.string(budget)?);
+        }
+        Some(strings)
     }
 }
 

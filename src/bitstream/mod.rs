@@ -2,6 +2,7 @@
 
 pub(crate) mod announced;
 pub(crate) mod bits;
+pub(crate) mod budget;
 pub(crate) mod bytes;
 pub(crate) mod chunk;
 pub(crate) mod compensation;

@@ -271,11 +271,16 @@ pub struct LimitArgs {
     #[arg(long, value_name = "N", default_value_t = Limits::default().max_vertices)]
     #[arg(value_parser = quantity::count, allow_negative_numbers = true)]
     pub max_vertices: u32,
+    /// Most work that decoding may take, e.g. 50M: about ten million units a second. By default 128 for each byte of the
+    /// stream and 262144 besides, several times what an ordinary stream takes.
+    #[arg(long, value_name = "UNITS", value_parser = quantity::units, allow_negative_numbers = true)]
+    pub max_work: Option<u64>,
 }
 
 impl LimitArgs {
     pub fn limits(&self) -> Limits {
-        Limits { max_memory: self.max_memory, max_vertices: self.max_vertices, ..Limits::default() }
+        let Self { max_memory, max_vertices, max_work } = *self;
+        Limits { max_memory, max_vertices, max_work, ..Limits::default() }
     }
 }
 

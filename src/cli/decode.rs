@@ -106,7 +106,7 @@ fn write(
     mesh: &TriMesh,
     attributes: &Attributes,
 ) -> anyhow::Result<WriteReport> {
-    let scene = Scene::unpack(mesh, attributes);
+    let scene = Scene::unpack(mesh, attributes).with_context(|| destination.name())?;
     if let Destination::File(path) = destination {
         let written = match &scene {
             Some(scene) => lwc::io::write_scene(path, scene),

@@ -73,7 +73,7 @@ pub fn read_for_stream(path: &Path, merge: bool, ui: &Ui) -> anyhow::Result<Mesh
 
 /// A mesh that was decoded with all its parts in their places, if it is a scene.
 pub fn in_place(mesh: TriMesh, attributes: Attributes) -> Result<MeshFile, ReadError> {
-    if let Some(scene) = Scene::unpack(&mesh, &attributes) {
+    if let Some(scene) = Scene::unpack(&mesh, &attributes)? {
         return scene.merge();
     }
     let mut file = MeshFile::default();

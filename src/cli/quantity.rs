@@ -25,6 +25,15 @@ pub fn bytes(text: &str) -> Result<u64, String> {
         .ok_or_else(|| "it is no number of bytes like 5000, 20K, 1.5GiB or 20MB".into())
 }
 
+/// Units of work: `5000`, `20k`, `1.5G`, powers of 1000.
+pub fn units(text: &str) -> Result<u64, String> {
+    let (number, unit) = split(text);
+    scaled(number, &unit.to_ascii_lowercase(), 1000.0)
+        .filter(|&n| n < u64::MAX as f64)
+        .map(|n| n as u64)
+        .ok_or_else(|| "it is no number of units like 5000, 20K or 1.5G".into())
+}
+
 /// A count: `5000`, `20k`, `1.5M`, powers of 1000, at most 2^32 − 1.
 pub fn count(text: &str) -> Result<u32, String> {
     let (number, unit) = split(text);

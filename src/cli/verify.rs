@@ -41,7 +41,8 @@ pub fn verify(
 
 fn decode(encoded: &Encoded) -> Result<Decoder, String> {
     // These bytes are our own: no limits.
-    let limits = Limits { max_memory: u64::MAX, max_vertices: u32::MAX, max_levels: u32::MAX };
+    let limits =
+        Limits { max_memory: u64::MAX, max_vertices: u32::MAX, max_levels: u32::MAX, max_work: None };
     let mut decoder = Decoder::new(limits);
     let mut rest = &encoded.bytes[..];
     let mut passes = encoded.info.passes().iter();

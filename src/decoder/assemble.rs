@@ -2,18 +2,23 @@
 //! lies loose beside it, exact floats, the order of the file (`format/SPEC.md`, section 9).
 
 use super::attributes::AttributeDecoder;
+use super::forecast;
+use super::frame::TrailingKind;
+use super::refused::Refused;
+use crate::bitstream::chunk::kind;
 use crate::bitstream::header::Grid;
 use crate::bitstream::range_coder::RangeDecoder;
 use crate::limits::Limits;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, Domain, GltfMaterials, NO_ROW, has_three_vertices};
-use crate::passes::attribute::Rows;
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, has_three_vertices};
+use crate::passes::attribute::{Declarations, Rows};
+use crate::passes::cost::{self, Counts};
 use crate::passes::glue::{self, GlueModels};
 use crate::passes::loose::{self, Loose};
 use crate::passes::order::{self, Order};
 use crate::passes::values::{self, Elements, Told};
 use crate::passes::{GridMesh, Malformed, exact};
-use crate::{DecodeError, TriMesh, scene};
+use crate::{DecodeError, TriMesh};
 
 /// What the chunks beside the passes tell of the finest mesh, as far as they have come.
 #[derive(Default)]
@@ -26,6 +31,33 @@ pub(crate) struct Extras {
     /// What is told of each attribute beyond the surface.
     pub(crate) values: Vec<Told>,
     pub(crate) order: Option<Order>,
+}
+
+impl Extras {
+    /// Bytes of memory that this takes.
+    pub(super) fn memory(&self) -> u64 {
+        let loose = self.loose.as_ref().map_or(0, |loose| size_of::<[u32; 3]>() as u64 * loose.len());
+        let of_values = |told: &Told| 8 * told.values.len() + size_of::<u32>() * told.of.len();
+        let exact = self.positions.as_ref().map_or(0, |positions| size_of::<[f64; 3]>() * positions.len());
+        let values: usize = self.values.iter().map(of_values).sum();
+        let order = self.order.as_ref().map_or(0, |order| order.vertices.len() + order.corners.len());
+        loose + (size_of::<u32>() * (self.roots.capacity() + order) + exact + values) as u64
+    }
+
+    /// Whether all that is known is of the vertices and triangles that `mesh` and the loose ones are: whatever order the
+    /// chunks came in, no index is out of range.
+    fn fit(&self, mesh: &GridMesh) -> bool {
+        let joined = self.joined(mesh.positions.len());
+        let num_vertices = joined.first.len() + self.num_loose(Domain::Vertex);
+        let num_faces = joined.faces(&mesh.surface.triangles).count() + self.num_loose(Domain::Face);
+        let loose = self.loose.iter().flat_map(|loose| loose.faces.iter().flatten());
+        loose.into_iter().all(|&v| (v as usize) < num_vertices)
+            && self.positions.as_ref().is_none_or(|positions| positions.len() == num_vertices)
+            && self
+                .order
+                .as_ref()
+                .is_none_or(|order| (order.vertices.len(), order.corners.len()) == (num_vertices, num_faces))
+    }
 }
 
 /// The vertices of a surface, joined.
@@ -104,7 +136,7 @@ impl Extras {
         };
         match &self.order {
             Some(order) => order.apply(&positions, &faces),
-            None => TriMesh::from_valid_parts(positions, faces),
+            None => TriMesh::from_decoded_parts(positions, faces),
         }
     }
 }
@@ -190,33 +222,6 @@ impl Extras {
     }
 }
 
-/// Why a chunk is refused.
-pub(super) enum Refused {
-    Malformed(Malformed),
-    Limit(DecodeError),
-}
-
-impl Refused {
-    pub(super) fn at(self, offset: u64) -> DecodeError {
-        match self {
-            Self::Malformed(Malformed(what)) => DecodeError::Malformed { what, offset },
-            Self::Limit(error) => error,
-        }
-    }
-}
-
-impl From<Malformed> for Refused {
-    fn from(malformed: Malformed) -> Self {
-        Self::Malformed(malformed)
-    }
-}
-
-impl From<DecodeError> for Refused {
-    fn from(error: DecodeError) -> Self {
-        Self::Limit(error)
-    }
-}
-
 /// Bytes of memory that a vertex and a face may take for each kind of chunk, working space included.
 const GLUE_PER_VERTEX: u64 = 28;
 const LOOSE_EACH: u64 = 24;
@@ -236,6 +241,8 @@ pub(super) struct Beside<'a> {
     pub(super) limits: &'a Limits,
     /// Memory that is taken already.
     pub(super) used: u64,
+    /// Units of work that are left.
+    pub(super) work: u64,
 }
 
 impl Beside<'_> {
@@ -244,9 +251,48 @@ impl Beside<'_> {
     }
 }
 
+/// Units of work of a chunk for the vertices and faces of the surface.
+fn units_on_surface(kind: u8, mesh: &GridMesh, declared: Option<&Declarations>) -> u64 {
+    let (vertices, faces) = (mesh.positions.len() as u64, mesh.surface.triangles.len() as u64);
+    let surface = Counts { vertices, faces };
+    let none = Declarations::default();
+    match kind {
+        kind::GLUE => cost::glue(surface),
+        _ => forecast::of_trailing(TrailingKind::new(kind), surface, declared.unwrap_or(&none)),
+    }
+}
+
 impl Extras {
+    /// Takes a chunk that stands behind a pass, or is skipped, and returns the units of work that this took.
+    ///
+    /// # Errors
+    /// If it names something that no encoder writes, does not fit what is there, or is beyond a limit.
+    pub(super) fn read(
+        &mut self,
+        kind: u8,
+        chunk: Beside,
+        attributes: Option<&AttributeDecoder>,
+    ) -> Result<u64, Refused> {
+        let declared = attributes.map(|attributes| &attributes.declarations);
+        let units = units_on_surface(kind, chunk.mesh, declared);
+        match (kind, attributes) {
+            (kind::GLUE, _) => self.read_glue(chunk)?,
+            (kind::LOOSE, _) => self.read_loose(chunk)?,
+            (kind::EXACT, _) => self.read_exact(chunk)?,
+            (kind::VALUES, Some(attributes)) => self.read_values(chunk, attributes)?,
+            (kind::VALUES, None) => return Err(Malformed("values of no attributes").into()),
+            (kind::ORDER, _) => self.read_order(chunk)?,
+            _ => return Ok(units),
+        }
+        if kind != kind::GLUE && !self.fit(chunk.mesh) {
+            return Err(Malformed("a chunk that does not fit the mesh").into());
+        }
+        let loose = self.loose.as_ref().filter(|_| kind == kind::LOOSE);
+        Ok(units + loose.map_or(0, |loose| cost::loose(loose.len())))
+    }
+
     /// Joins vertices that have come since the last time.
-    pub(super) fn read_glue(&mut self, chunk: Beside) -> Result<(), Refused> {
+    fn read_glue(&mut self, chunk: Beside) -> Result<(), Refused> {
         chunk.check_memory(GLUE_PER_VERTEX * chunk.mesh.positions.len() as u64)?;
         let known = self.roots.len();
         let mut coder = RangeDecoder::new(chunk.payload);
@@ -258,19 +304,21 @@ impl Extras {
     }
 
     /// Takes what lies loose beside the finest surface.
-    pub(super) fn read_loose(&mut self, chunk: Beside) -> Result<(), Refused> {
+    fn read_loose(&mut self, chunk: Beside) -> Result<(), Refused> {
         let Beside { payload, mesh, grid, limits, .. } = chunk;
         let mut coder = RangeDecoder::new(payload);
         let counts = loose::code_counts(&mut coder, payload.len(), None)?;
         let num_joined = self.joined(mesh.positions.len()).first.len();
         Limits::check("vertices", num_joined as u64 + counts[0], u64::from(limits.max_vertices))?;
-        chunk.check_memory(LOOSE_EACH * (counts[0] + counts[1]))?;
+        let count = counts[0] + counts[1];
+        chunk.check_memory(LOOSE_EACH * count)?;
+        Limits::check("work", cost::loose(count), chunk.work)?;
         self.loose = Some(loose::code(&mut coder, grid.precision, num_joined, counts, None)?);
         Ok(())
     }
 
     /// Takes the exact positions.
-    pub(super) fn read_exact(&mut self, chunk: Beside) -> Result<(), Refused> {
+    fn read_exact(&mut self, chunk: Beside) -> Result<(), Refused> {
         let Beside { payload, mesh, grid, .. } = chunk;
         let ladders = exact::read_ladders(payload).ok_or(Malformed("the kinds of exact numbers"))?;
         let cells = self.of_vertices(&self.joined(mesh.positions.len()), &mesh.positions, |cell| cell);
@@ -281,11 +329,7 @@ impl Extras {
     }
 
     /// Takes values of attributes: exact ones, and those of what lies loose.
-    pub(super) fn read_values(
-        &mut self,
-        chunk: Beside,
-        attributes: &AttributeDecoder,
-    ) -> Result<(), Refused> {
+    fn read_values(&mut self, chunk: Beside, attributes: &AttributeDecoder) -> Result<(), Refused> {
         let Beside { payload, mesh, .. } = chunk;
         let triangles = &mesh.surface.triangles;
         let list = &attributes.declarations.list;
@@ -314,7 +358,7 @@ impl Extras {
     }
 
     /// Takes the order of the file.
-    pub(super) fn read_order(&mut self, chunk: Beside) -> Result<(), Refused> {
+    fn read_order(&mut self, chunk: Beside) -> Result<(), Refused> {
         let mesh = chunk.mesh;
         let joined = self.joined(mesh.positions.len());
         let num_vertices = joined.first.len() + self.loose.as_ref().map_or(0, |loose| loose.cells.len());
@@ -324,10 +368,4 @@ impl Extras {
         self.order = Some(order::code(&mut coder, num_vertices, &faces, None)?);
         Ok(())
     }
-}
-
-/// Takes how materials look, from a chunk before the passes or behind them.
-pub(super) fn read_materials(payload: &[u8], limits: &Limits, used: u64) -> Result<GltfMaterials, Refused> {
-    Limits::check("memory", used + payload.len() as u64, limits.max_memory)?;
-    Ok(scene::read_materials(payload).ok_or(Malformed("materials"))?)
 }

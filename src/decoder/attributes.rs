@@ -221,22 +221,26 @@ pub(super) fn check_density(declarations: &Declarations, passes: &[PassInfo]) ->
     Ok(())
 }
 
-/// Bytes of memory that attributes of a mesh may take.
-pub(super) fn memory_for(declarations: &Declarations, pass: &PassInfo, mixing: Mixing) -> u64 {
-    let models: u64 = match mixing {
+/// Bytes of memory that the models of all attributes take.
+pub(super) fn bytes_of_models(declarations: &Declarations, mixing: Mixing) -> u64 {
+    let of_one: u64 = match mixing {
         Mixing::Plain => 200 << 10,
         Mixing::Specialised => 12 << 20,
     };
+    of_one * declarations.list.len() as u64
+}
+
+/// Bytes of memory that attributes of a mesh may take.
+pub(super) fn memory_for(declarations: &Declarations, pass: &PassInfo, mixing: Mixing) -> u64 {
     let (vertices, faces) = (u64::from(pass.vertices), u64::from(pass.faces));
     let of_one = |declaration: &Declaration| {
         let row = 4 * declaration.num_channels() as u64 + 1;
-        models
-            + match declaration.domain {
-                Domain::Vertex => vertices * (row + 4),
-                // A pass may replace as many rows as there are.
-                Domain::Corner => faces * 3 * (2 * row + 4),
-                Domain::Face => faces * (2 * row + 4),
-            }
+        match declaration.domain {
+            Domain::Vertex => vertices * (row + 4),
+            // A pass may replace as many rows as there are.
+            Domain::Corner => faces * 3 * (2 * row + 4),
+            Domain::Face => faces * (2 * row + 4),
+        }
     };
-    declarations.list.iter().map(of_one).sum()
+    bytes_of_models(declarations, mixing) + declarations.list.iter().map(of_one).sum::<u64>()
 }

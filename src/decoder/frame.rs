@@ -75,7 +75,7 @@ pub enum TrailingKind {
 }
 
 impl TrailingKind {
-    fn new(kind: u8) -> Self {
+    pub(crate) fn new(kind: u8) -> Self {
         match kind {
             chunk::kind::LOOSE => Self::Loose,
             chunk::kind::EXACT => Self::Exact,
@@ -180,7 +180,8 @@ impl StreamInfo {
     /// # Errors
     /// If the bytes are no stream, or damaged before the table ends.
     pub fn read(bytes: &[u8]) -> Result<Option<Self>, DecodeError> {
-        let mut decoder = super::Decoder::new(Limits::default());
+        let limits = Limits { max_work: Some(u64::MAX), ..Limits::default() };
+        let mut decoder = super::Decoder::new(limits);
         decoder.feed(bytes)?;
         decoder.read_info()?;
         Ok(decoder.info().cloned())
@@ -281,12 +282,28 @@ impl FrameReader {
             self.buffer.drain(..self.read);
             self.read = 0;
         }
+        let needed = self.buffer.len() + bytes.len();
+        if needed > self.buffer.capacity() {
+            self.buffer.reserve_exact(self.grown_for(needed) - self.buffer.len());
+        }
         self.buffer.extend_from_slice(bytes);
     }
 
-    /// Bytes held.
-    pub(super) fn buffered(&self) -> usize {
-        self.buffer.len()
+    /// Bytes of memory held.
+    pub(super) fn memory(&self) -> u64 {
+        self.buffer.capacity() as u64
+    }
+
+    /// Bytes of memory held at most while so many more bytes come in: the buffer may move to a larger place.
+    pub(super) fn memory_with(&self, more: usize) -> u64 {
+        let needed = self.buffer.len().saturating_add(more);
+        let moved = if needed > self.buffer.capacity() { self.grown_for(needed) } else { 0 };
+        self.memory() + moved as u64
+    }
+
+    /// The place for `needed` bytes, with room for half as many more: few moves, and little that is unused.
+    fn grown_for(&self, needed: usize) -> usize {
+        if self.buffer.is_empty() { needed } else { needed.saturating_add(needed / 2) }
     }
 
     /// Place in the stream behind the last chunk.

@@ -81,7 +81,7 @@ impl<'a> LevelMesh<'a> {
 
     /// The cut surface itself, in model units: a copy that owns its arrays.
     pub fn to_cut_mesh(&self) -> TriMesh {
-        TriMesh::from_valid_parts(self.positions(), self.triangles.to_vec())
+        TriMesh::from_decoded_parts(self.positions(), self.triangles.to_vec())
     }
 
     /// For each vertex of this cut surface the vertex of the joined one, and the number of those: before

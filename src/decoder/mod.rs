@@ -2,10 +2,14 @@
 
 pub(crate) mod assemble;
 mod attributes;
+pub(crate) mod environment;
+pub(crate) mod forecast;
 mod frame;
+mod head;
 mod level_mesh;
 mod passes;
 mod push;
+mod refused;
 mod running;
 
 pub use frame::{AttributeInfo, PassInfo, PassKind, StreamInfo, TrailingInfo, TrailingKind};

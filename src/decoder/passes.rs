@@ -19,10 +19,27 @@ use crate::{DecodeError, Profile};
 #[derive(Clone)]
 pub(super) struct PassDecoder {
     pub(super) mesh: GridMesh,
+    /// Made by the first pass, which has been checked against the limits then.
+    pub(super) models: Option<Models>,
+    pub(super) profile: Profile,
+}
+
+/// Adaptive models of splits and refinements.
+#[derive(Clone)]
+pub(super) struct Models {
     pub(super) connectivity: ConnectivityModels,
     pub(super) coordinates: CoordinateModels,
     pub(super) refine: RefineModels,
-    pub(super) profile: Profile,
+}
+
+impl Models {
+    pub(super) fn new(mixing: Mixing) -> Self {
+        Self {
+            connectivity: ConnectivityModels::new(mixing),
+            coordinates: CoordinateModels::new(mixing),
+            refine: RefineModels::new(mixing),
+        }
+    }
 }
 
 /// Bytes of memory that a vertex and a face of the finest mesh may take, working space included.
@@ -49,14 +66,7 @@ pub(super) struct Changes {
 
 impl PassDecoder {
     pub(super) fn new(profile: Profile) -> Self {
-        let mixing = profile.mixing();
-        Self {
-            mesh: GridMesh::default(),
-            connectivity: ConnectivityModels::new(mixing),
-            coordinates: CoordinateModels::new(mixing),
-            refine: RefineModels::new(mixing),
-            profile,
-        }
+        Self { mesh: GridMesh::default(), models: None, profile }
     }
 
     /// Bytes of memory that a pass may take, the buffer of the stream not counted.

@@ -1,28 +1,25 @@
 //! The push decoder: bytes in, refined meshes out.
 
-use super::assemble::{self, Beside, Extras};
+use super::assemble::{Beside, Extras};
 use super::attributes::{self, AttributeDecoder};
-use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
+use super::environment;
+use super::forecast;
+use super::frame::{Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
+use super::head::{ASSETS, Head, Source};
 use super::level_mesh::LevelMesh;
 use super::passes::PassDecoder;
+use super::refused::{malformed, out_of_order, skip};
 use super::running::Running;
-use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::compensation::Compensation;
-use crate::bitstream::header::{Header, Provenance};
 use crate::limits::Limits;
-use crate::mesh::{Attributes, GltfMaterials, SceneTable};
+use crate::mesh::Attributes;
 use crate::passes::GridMesh;
-use crate::passes::attribute::Declarations;
 use crate::passes::patch::Patches;
 use crate::passes::work::Work;
-use crate::{DecodeError, Profile, TriMesh, scene};
+use crate::{DecodeError, Profile, TriMesh};
 use std::collections::VecDeque;
 use std::ops::Range;
-
-/// Whether the decoder knows what stands beside the surface. Without that all of it is skipped as chunks that nobody
-/// knows, and the compiler leaves out what would read it.
-const ASSETS: bool = cfg!(feature = "assets");
 
 /// What one finished pass changed.
 ///
@@ -71,13 +68,7 @@ pub struct Decoder {
     last_level: u32,
     compensate: bool,
     frames: FrameReader,
-    header: Option<Header>,
-    provenance: Option<Provenance>,
-    /// Payload of its chunk, until the number of passes is known.
-    compensation: Option<Vec<u8>>,
-    announced: Option<Announced>,
-    scene: Option<SceneTable>,
-    materials: Option<GltfMaterials>,
+    head: Head,
     info: Option<StreamInfo>,
     /// Passes done.
     done: usize,
@@ -87,8 +78,6 @@ pub struct Decoder {
     /// Kinds of the chunks that must come before the next pass, or behind the last: what belongs to the
     /// passes that are done.
     awaited: VecDeque<u8>,
-    /// Until the table of passes.
-    declarations: Option<Declarations>,
     attributes: Option<AttributeDecoder>,
     /// A chunk of attributes that is half done.
     running_attributes: Option<Chunk>,
@@ -110,18 +99,12 @@ impl Decoder {
             last_level: options.level.unwrap_or(u32::MAX),
             compensate: !options.uncompensated,
             frames: FrameReader::new(),
-            header: None,
-            provenance: None,
-            compensation: None,
-            announced: None,
-            scene: None,
-            materials: None,
+            head: Head::default(),
             info: None,
             done: 0,
             passes: PassDecoder::new(Profile::default()),
             running: None,
             awaited: VecDeque::new(),
-            declarations: None,
             attributes: None,
             running_attributes: None,
             extras: Extras::default(),
@@ -157,7 +140,7 @@ impl Decoder {
         if self.is_complete() {
             return Ok(());
         }
-        let needed = self.frames.buffered() as u64 + bytes.len() as u64;
+        let needed = self.memory_besides() - self.frames.memory() + self.frames.memory_with(bytes.len());
         Limits::check("memory", needed, self.limits.max_memory).inspect_err(|_| self.failed = true)?;
         // The payload of a chunk that is half done must stay where it is.
         self.frames.feed(bytes, self.running.is_none() && self.running_attributes.is_none());
@@ -209,9 +192,28 @@ impl Decoder {
         if self.failed {
             return Err(DecodeError::Failed);
         }
-        let result = self.try_step(work).inspect_err(|_| self.failed = true);
-        self.work_done += work.done();
-        result
+        self.step_within_limits(work).inspect_err(|_| self.failed = true)
+    }
+
+    /// Goes on in slices that the work limit allows: each byte that is read earns more of it.
+    fn step_within_limits(&mut self, work: &mut Work) -> Result<Step, DecodeError> {
+        environment::check().map_err(DecodeError::FloatingPoint)?;
+        loop {
+            let mut slice = work.at_most(self.work_left());
+            let step = self.try_step(&mut slice);
+            self.work_done += slice.done();
+            work.spend(slice.done());
+            if step != Ok(Step::Unfinished) || !work.is_left() {
+                return step;
+            }
+            let allowed = forecast::allowed(&self.limits, self.frames.position());
+            Limits::check("work", self.work_done.saturating_add(1), allowed)?;
+        }
+    }
+
+    /// Units of work that the bytes read so far have earned and not spent.
+    fn work_left(&self) -> u64 {
+        forecast::allowed(&self.limits, self.frames.position()).saturating_sub(self.work_done)
     }
 
     fn try_step(&mut self, work: &mut Work) -> Result<Step, DecodeError> {
@@ -254,101 +256,44 @@ impl Decoder {
             let Some(chunk) = self.frames.next_chunk(&self.limits, None)? else {
                 return Ok(());
             };
-            let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
-            let payload = self.frames.payload(&chunk);
-            match (chunk.kind, &self.header) {
-                (kind::HEADER, None) => {
-                    let header = Header::read(payload).ok_or(malformed("the header"))?;
-                    let profile = Profile::from_code(header.profile).filter(|profile| profile.is_supported());
-                    let profile = profile.ok_or_else(|| unsupported_profile(header.profile))?;
-                    if profile != self.passes.profile {
-                        self.passes = PassDecoder::new(profile);
-                    }
-                    let usual = header.is_usual.then_some(Provenance::USUAL);
-                    self.provenance = self.provenance.or(usual);
-                    self.header = Some(header);
-                }
-                (kind::PASSES, Some(Header { grid, .. })) => {
-                    let none = Declarations::default();
-                    let declared = self.declarations.as_ref().unwrap_or(&none);
-                    let passes = frame::list_passes(payload, grid, self.frames.position(), &declared.bytes);
-                    let mut passes = passes.map_err(|e| malformed(e.0))?;
-                    if self.declarations.is_some() {
-                        attributes::check_density(declared, &passes).map_err(malformed)?;
-                    }
-                    if let Some(payload) = self.compensation.take() {
-                        frame::add_compensation(&mut passes, &payload).map_err(|e| malformed(e.0))?;
-                    }
-                    let announced = self.announced.take().unwrap_or_default();
-                    let trailing = frame::add_announced(&mut passes, &announced);
-                    let trailing = trailing.map_err(|e| malformed(e.0))?;
-                    let attributes = declared.list.iter().map(AttributeInfo::of).collect();
-                    let (grid, provenance, profile) = (*grid, self.provenance, self.passes.profile);
-                    self.info = Some(StreamInfo {
-                        grid,
-                        provenance,
-                        profile,
-                        passes,
-                        attributes,
-                        trailing,
-                        scene: self.scene.take(),
-                    });
-                    if ASSETS && let Some(declarations) = self.declarations.take() {
-                        self.attributes = Some(AttributeDecoder::new(declarations, profile.mixing()));
-                    }
-                }
-                (kind::DECLARATIONS, _) if ASSETS && self.declarations.is_none() => {
-                    let needed = 2 * payload.len() as u64 + self.frames.buffered() as u64;
-                    Limits::check("memory", needed, self.limits.max_memory)?;
-                    let declared = Declarations::read(payload);
-                    self.declarations = Some(declared.ok_or(malformed("declarations of attributes"))?);
-                }
-                (kind::DECLARATIONS, _) if ASSETS => return Err(out_of_order(&chunk)),
-                (kind::COMPENSATION, _) if self.compensation.is_none() => {
-                    self.compensation = Some(payload.to_vec());
-                }
-                (kind::PROVENANCE, _) => self.provenance = Provenance::read(payload),
-                (kind::SCENE, _) if ASSETS && self.scene.is_none() => {
-                    self.scene = Some(scene::read(payload).ok_or(malformed("the scene"))?);
-                }
-                (kind::MATERIALS, _) if ASSETS && self.materials.is_none() => {
-                    let held = self.frames.buffered() as u64;
-                    let materials = assemble::read_materials(payload, &self.limits, held);
-                    self.materials = Some(materials.map_err(|e| e.at(chunk.offset))?);
-                }
-                (kind::SCENE | kind::MATERIALS, _) if ASSETS => return Err(out_of_order(&chunk)),
-                (kind::ANNOUNCED, _) if ASSETS && self.announced.is_none() => {
-                    self.announced = Some(Announced::read(payload).ok_or(malformed("the announced chunks"))?);
-                }
-                (kind::ANNOUNCED, _) if ASSETS => return Err(out_of_order(&chunk)),
-                (kind::HEADER | kind::PASSES | kind::COMPENSATION, _) => return Err(out_of_order(&chunk)),
-                _ => skip(&chunk)?,
-            }
+            let source = Source { chunk: &chunk, frames: &self.frames, limits: &self.limits, used: 0 };
+            self.info = self.head.take(source)?;
+        }
+        let Some(info) = &self.info else { return Ok(()) };
+        if info.profile != self.passes.profile {
+            self.passes = PassDecoder::new(info.profile);
+        }
+        if ASSETS && let Some(declarations) = self.head.declarations.take() {
+            self.attributes = Some(AttributeDecoder::new(declarations, info.profile.mixing()));
         }
         Ok(())
     }
 
+    /// Bytes of memory that are held besides the mesh and its attributes.
+    fn memory_besides(&self) -> u64 {
+        self.frames.memory() + self.head.memory() + self.extras.memory()
+    }
+
     fn begin(&mut self, chunk: Chunk, work: &mut Work) -> Result<Step, DecodeError> {
-        let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
-        let pass = self.next_pass().ok_or(malformed("a pass that was not announced"))?;
-        let payload = self.frames.payload(&chunk);
-        let attributes = self
-            .attributes
-            .as_ref()
-            .map(|a| attributes::memory_for(&a.declarations, pass, self.passes.profile.mixing()));
-        let held = self.frames.buffered() as u64 + attributes.unwrap_or(0);
+        let pass = self.next_pass().ok_or(malformed("a pass that was not announced", &chunk))?;
+        let held = self.memory_besides() + self.memory_of_attributes(pass);
         self.passes.check_limits(pass, &self.limits, held)?;
-        let running =
-            Running::new(payload, pass, self.passes.profile).ok_or(malformed("a pass of other streams"))?;
-        self.advance(running, chunk, work)
+        let running = Running::new(self.frames.payload(&chunk), pass, self.passes.profile);
+        self.advance(running.ok_or(malformed("a pass of other streams", &chunk))?, chunk, work)
+    }
+
+    /// Bytes of memory that attributes may take once a pass is done.
+    fn memory_of_attributes(&self, pass: &PassInfo) -> u64 {
+        let mixing = self.passes.profile.mixing();
+        self.attributes.as_ref().map_or(0, |a| attributes::memory_for(&a.declarations, pass, mixing))
     }
 
     /// Goes on with the next pass.
     fn advance(&mut self, mut running: Running, chunk: Chunk, work: &mut Work) -> Result<Step, DecodeError> {
-        let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
-        let pass = self.next_pass().copied().ok_or(malformed("a pass that was not announced"))?;
+        let pass = self.next_pass().copied().ok_or(malformed("a pass that was not announced", &chunk))?;
         let payload = self.frames.payload(&chunk);
-        let changes = self.passes.advance(&mut running, &pass, payload, work).map_err(|e| malformed(e.0))?;
+        let changes = self.passes.advance(&mut running, &pass, payload, work);
+        let changes = changes.map_err(|e| malformed(e.0, &chunk))?;
         let Some((changes, patches)) = changes else {
             self.running = Some((running, chunk));
             return Ok(Step::Unfinished);
@@ -400,8 +345,7 @@ impl Decoder {
             .checked_sub(1)
             .and_then(|last| self.attributes.as_ref()?.declarations.bytes.get(last).copied());
         if expected != Some(self.frames.payload(&chunk).len() as u32) {
-            let what = "values of attributes differ from their declaration";
-            return Err(DecodeError::Malformed { what, offset: chunk.offset });
+            return Err(malformed("values of attributes differ from their declaration", &chunk));
         }
         self.advance_attributes(chunk, work)
     }
@@ -410,8 +354,8 @@ impl Decoder {
     fn advance_attributes(&mut self, chunk: Chunk, work: &mut Work) -> Result<bool, DecodeError> {
         let Some(attributes) = &mut self.attributes else { return Err(out_of_order(&chunk)) };
         let payload = self.frames.payload(&chunk);
-        let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
-        let is_done = attributes.advance(&self.passes.mesh, payload, work).map_err(|e| malformed(e.0))?;
+        let is_done = attributes.advance(&self.passes.mesh, payload, work);
+        let is_done = is_done.map_err(|e| malformed(e.0, &chunk))?;
         if is_done {
             self.awaited.pop_front();
         } else {
@@ -422,7 +366,6 @@ impl Decoder {
 
     /// Takes glue, or a chunk that follows the last pass.
     fn read_extra(&mut self, chunk: &Chunk, work: &mut Work) -> Result<(), DecodeError> {
-        let malformed = |what| DecodeError::Malformed { what, offset: chunk.offset };
         let (Some(info), Some(pass)) = (&self.info, self.last_pass()) else {
             return Err(out_of_order(chunk));
         };
@@ -432,26 +375,20 @@ impl Decoder {
             kind => info.trailing.iter().find(|t| t.code == kind).map_or(0, |t| t.bytes),
         };
         if chunk::other_size(payload.len() as u32) != announced {
-            return Err(malformed("a chunk differs from its announcement"));
+            return Err(malformed("a chunk differs from its announcement", chunk));
         }
-        let used = self.frames.buffered() as u64 + self.passes.memory_for(pass);
+        let memory_of_mesh = self.passes.memory_for(pass) + self.memory_of_attributes(pass);
+        if chunk.kind == kind::MATERIALS {
+            let (frames, limits) = (&self.frames, &self.limits);
+            let used = memory_of_mesh + self.extras.memory();
+            return self.head.take_materials(Source { chunk, frames, limits, used });
+        }
+        let used = self.memory_besides() + memory_of_mesh;
+        let left = self.work_left().saturating_sub(work.done());
         let mesh = &self.passes.mesh;
-        let beside = Beside { payload, mesh, grid: &info.grid, limits: &self.limits, used };
-        match chunk.kind {
-            kind::GLUE => self.extras.read_glue(beside),
-            kind::LOOSE => self.extras.read_loose(beside),
-            kind::EXACT => self.extras.read_exact(beside),
-            kind::VALUES => match &self.attributes {
-                Some(attributes) => self.extras.read_values(beside, attributes),
-                None => return Err(malformed("values of no attributes")),
-            },
-            kind::ORDER => self.extras.read_order(beside),
-            kind::MATERIALS => assemble::read_materials(payload, &self.limits, used)
-                .map(|materials| self.materials = Some(materials)),
-            _ => Ok(()),
-        }
-        .map_err(|e| e.at(chunk.offset))?;
-        work.sweep(mesh.positions.len() + mesh.surface.triangles.len());
+        let beside = Beside { payload, mesh, grid: &info.grid, limits: &self.limits, used, work: left };
+        let units = self.extras.read(chunk.kind, beside, self.attributes.as_ref());
+        work.spend(units.map_err(|e| e.at(chunk))?);
         Ok(())
     }
 
@@ -519,7 +456,7 @@ impl Decoder {
     fn with_scene(&self, mut attributes: Attributes) -> Attributes {
         if self.done > 0 {
             attributes.scene = self.info.as_ref().and_then(|info| info.scene.clone());
-            attributes.gltf_materials.clone_from(&self.materials);
+            attributes.gltf_materials.clone_from(&self.head.materials);
         }
         attributes
     }
@@ -574,8 +511,8 @@ impl Decoder {
             return None;
         }
         // Two copies that take as much again as the mesh itself.
-        let buffered = self.frames.buffered() as u64 + 2 * self.passes.memory_for(pass);
-        self.passes.check_limits(pass, &self.limits, buffered).ok()?;
+        let held = self.memory_besides() + 2 * self.passes.memory_for(pass);
+        self.passes.check_limits(pass, &self.limits, held).ok()?;
         let (mesh, patches) = self.passes.mesh_with_cut(pass, payload)?;
         Some((pass, mesh, patches))
     }
@@ -595,27 +532,6 @@ impl Decoder {
     pub fn is_complete(&self) -> bool {
         self.info.is_some() && self.next_pass().is_none() && self.awaited.is_empty()
     }
-}
-
-fn unsupported_profile(code: u8) -> DecodeError {
-    let what = match Profile::from_code(code) {
-        Some(profile) => format!("profile {}, which this decoder was built without", profile.name()),
-        None => format!("profile {code}"),
-    };
-    DecodeError::Unsupported(what)
-}
-
-fn out_of_order(chunk: &Chunk) -> DecodeError {
-    DecodeError::Malformed { what: "a chunk out of order", offset: chunk.offset }
-}
-
-/// Passes over a chunk that may be skipped.
-fn skip(chunk: &Chunk) -> Result<(), DecodeError> {
-    if !kind::is_critical(chunk.kind) {
-        return Ok(());
-    }
-    let kind = frame::printable(chunk.kind);
-    Err(DecodeError::Unsupported(format!("chunk '{kind}' at byte {}", chunk.offset)))
 }
 
 /// How to decode.

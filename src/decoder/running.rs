@@ -1,7 +1,7 @@
 //! A pass amid its work: it goes on where it was, slice by slice.
 
 use super::frame::{PassInfo, PassKind};
-use super::passes::PassDecoder;
+use super::passes::{Models, PassDecoder};
 use crate::Profile;
 use crate::bitstream::header::Action;
 use crate::bitstream::mixer::Mixing;
@@ -118,11 +118,13 @@ impl Running {
         coder: &mut B,
         work: &mut Work,
     ) -> Result<Option<Patches>, Malformed> {
-        let mesh = &mut decoder.mesh;
+        let PassDecoder { mesh, models, profile } = decoder;
+        let mixing = profile.mixing();
+        let models = models.get_or_insert_with(|| Models::new(mixing));
         let (vertices, faces) = (pass.row.vertices as usize, pass.row.faces as usize);
         while work.is_left() {
             self.stage = match std::mem::replace(&mut self.stage, Stage::Over) {
-                Stage::Begin => self.begin(mesh, pass, decoder.profile.mixing(), work),
+                Stage::Begin => self.begin(mesh, pass, mixing, work),
                 Stage::Base(mut grower) => {
                     if grower.code_some(coder, work)? {
                         work.sweep(faces);
@@ -139,7 +141,7 @@ impl Running {
                     Stage::Places(placement)
                 }
                 Stage::Walk(mut walk) => {
-                    if walk.code_some(coder, &mut decoder.connectivity, mesh, None, work)? {
+                    if walk.code_some(coder, &mut models.connectivity, mesh, None, work)? {
                         let patches = walk.finish()?;
                         if patches.num_new_faces() != faces {
                             return Err(Malformed("a level has other faces than announced"));
@@ -190,9 +192,16 @@ impl Running {
                     }
                 }
                 Stage::Coordinates(patches) => {
-                    let models = &mut decoder.coordinates;
                     let bits = pass.precision;
-                    if coordinates::code_some(coder, models, mesh, &patches, bits, None, work)? {
+                    if coordinates::code_some(
+                        coder,
+                        &mut models.coordinates,
+                        mesh,
+                        &patches,
+                        bits,
+                        None,
+                        work,
+                    )? {
                         return Ok(Some(patches));
                     }
                     Stage::Coordinates(patches)
@@ -209,7 +218,7 @@ impl Running {
                     let is_over = if B::HAS_STREAMS {
                         plain::refine_some(coder, &mut mesh.positions, &mut next, None, work)
                     } else {
-                        refine::code_some(coder, &mut decoder.refine, mesh, &mut next, None, work)
+                        refine::code_some(coder, &mut models.refine, mesh, &mut next, None, work)
                     };
                     if is_over {
                         return Ok(Some(Patches::default()));

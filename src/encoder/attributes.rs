@@ -1,6 +1,7 @@
 //! From attributes to integers: how each is declared, and the rows of its elements.
 
 use super::options::EncodeOptions;
+use crate::bitstream::budget::Budget;
 use crate::mesh::surface::turns;
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
 use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
@@ -9,12 +10,13 @@ use crate::passes::attribute::{Coding, Declaration, Declarations};
 use crate::simplify::Seams;
 use crate::{EncodeError, TriMesh, scene};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// All attributes of a surface as integers.
 #[derive(Default)]
 pub(super) struct Quantised {
     pub(super) list: Vec<QuantisedAttribute>,
-    material_libraries: Vec<String>,
+    material_libraries: Arc<[String]>,
     /// Payloads of the scene and the materials.
     pub(super) scene: Option<Vec<u8>>,
     pub(super) materials: Option<Vec<u8>>,
@@ -94,8 +96,11 @@ pub(super) fn quantise(
         let payload = scene::write(table);
         let what = || "it breaks a rule of the format".to_owned();
         let fail = || EncodeError::Attribute { name: "scene".to_owned(), what: what() };
-        quantised.scene =
-            Some(Some(payload).filter(|payload| scene::read(payload).is_some()).ok_or_else(fail)?);
+        quantised.scene = Some(
+            Some(payload)
+                .filter(|payload| scene::read(payload, &mut Budget::new(0, u64::MAX)).is_some())
+                .ok_or_else(fail)?,
+        );
     }
     quantised.materials = attributes.gltf_materials.as_ref().map(scene::write_materials);
     let mut num_tracks = 0;

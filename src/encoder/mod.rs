@@ -4,6 +4,7 @@ mod analysis;
 mod attribute_writer;
 mod attributes;
 mod compensation;
+mod earnings;
 mod options;
 mod order;
 pub(crate) mod quantise;
@@ -22,6 +23,7 @@ use values::ExactValues;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
+use crate::decoder::environment;
 use crate::descriptors::{Features, FeaturesError};
 use crate::mesh::repair::{RepairReport, cut};
 use crate::mesh::{Attributes, has_three_vertices};
@@ -65,6 +67,7 @@ pub fn encode_with_attributes(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Encoded, EncodeError> {
     options.check()?;
+    environment::check().map_err(EncodeError::FloatingPoint)?;
     let usable = || mesh.triangles().iter().filter(|t| has_three_vertices(t));
     let num_usable = usable().count();
     if num_usable == 0 {

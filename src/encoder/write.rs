@@ -4,6 +4,7 @@ use super::analysis::{ANALYSIS_SHARE, Hierarchy};
 use super::attribute_writer::AttributeWriter;
 use super::attributes::Quantised;
 use super::compensation::{Fitter, Point};
+use super::earnings;
 use super::options::Progress;
 use super::schedule::{Schedule, Step};
 use super::scout::{Found, Names, Scout};
@@ -89,6 +90,9 @@ pub(super) fn write(
     let is_large = |payload: &&Vec<u8>| payload.len() > MOST_IN_FRONT;
     trailing.extend(attributes.materials.iter().filter(is_large).map(|m| (kind::MATERIALS, m.clone())));
     let values = writer.attributes.into_payloads();
+    let declared = attributes.declare(&values);
+    let loose = (exact.loose.len() + exact.loose_corners.len()) as u64;
+    earnings::pad(&mut writer.passes, &values, &declared, &trailing, loose);
     assemble(exact, hierarchy, attributes, &writer.passes, &values, &trailing)
 }
 
@@ -161,11 +165,20 @@ fn assemble(
 }
 
 /// Row and payload of a pass, and the glue behind it.
-struct WrittenPass {
-    row: Pass,
-    payload: Vec<u8>,
-    glue: Option<Vec<u8>>,
-    compensation: Compensation,
+pub(super) struct WrittenPass {
+    pub(super) row: Pass,
+    pub(super) payload: Vec<u8>,
+    pub(super) glue: Option<Vec<u8>>,
+    pub(super) compensation: Compensation,
+}
+
+impl WrittenPass {
+    /// Makes the payload longer; returns by how much.
+    pub(super) fn append_zeros(&mut self, count: u64) -> u64 {
+        self.payload.resize(self.payload.len() + count as usize, 0);
+        self.row.bytes = self.payload.len() as u32;
+        count
+    }
 }
 
 /// The decoder's state.

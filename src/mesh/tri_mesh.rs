@@ -65,8 +65,18 @@ impl TriMesh {
     }
 
     /// Arrays that are known to make a mesh.
+    #[cfg(any(feature = "encoder", feature = "io", test))]
     pub(crate) fn from_valid_parts(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
         debug_assert!(triangles.iter().flatten().all(|&v| (v as usize) < positions.len()));
+        Self { positions, triangles }
+    }
+
+    /// Arrays of a decoder. It has checked them where they came in; a triangle that names no vertex all the same does
+    /// not come out.
+    pub(crate) fn from_decoded_parts(positions: Vec<[f64; 3]>, mut triangles: Vec<[u32; 3]>) -> Self {
+        let is_sound = |t: &[u32; 3]| t.iter().all(|&v| (v as usize) < positions.len());
+        debug_assert!(triangles.iter().all(is_sound));
+        triangles.retain(is_sound);
         Self { positions, triangles }
     }
 

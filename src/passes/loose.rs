@@ -15,6 +15,13 @@ pub(crate) struct Loose {
     pub(crate) faces: Vec<[u32; 3]>,
 }
 
+impl Loose {
+    /// Vertices and faces.
+    pub(crate) fn len(&self) -> u64 {
+        (self.cells.len() + self.faces.len()) as u64
+    }
+}
+
 /// Codes how many vertices and how many faces are loose. A payload of `bytes` may bring
 /// [`MAX_VERTICES_PER_BYTE`] of both for each byte and one more.
 pub(crate) fn code_counts<B: BitCoder>(

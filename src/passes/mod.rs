@@ -10,6 +10,7 @@ pub(crate) mod base;
 pub(crate) mod compensation;
 pub(crate) mod connectivity;
 pub(crate) mod coordinates;
+pub(crate) mod cost;
 pub(crate) mod exact;
 pub(crate) mod glue;
 pub(crate) mod guess;

@@ -30,7 +30,7 @@ impl Order {
             let (face, first) = (faces[(corner / 3) as usize], (corner % 3) as usize);
             [0, 1, 2].map(|i| place[face[(first + i) % 3] as usize])
         });
-        TriMesh::from_valid_parts(
+        TriMesh::from_decoded_parts(
             self.vertices.iter().map(|&v| positions[v as usize]).collect(),
             turned.collect(),
         )

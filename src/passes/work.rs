@@ -17,6 +17,17 @@ impl Work {
         Self { limit: i64::from(units), left: i64::from(units) }
     }
 
+    /// What is left of it, but no more than `units`.
+    pub(crate) fn at_most(&self, units: u64) -> Self {
+        let units = i64::try_from(units).unwrap_or(i64::MAX).min(self.left);
+        Self { limit: units, left: units }
+    }
+
+    /// Takes the units of what has been done.
+    pub(crate) fn spend(&mut self, units: u64) {
+        self.left -= i64::try_from(units).unwrap_or(i64::MAX);
+    }
+
     /// More than any pass needs.
     pub(crate) fn unlimited() -> Self {
         Self { limit: i64::MAX, left: i64::MAX }

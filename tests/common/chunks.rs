@@ -225,6 +225,26 @@ pub fn join_resized(chunks: &[Chunk]) -> Vec<u8> {
     join(&chunks)
 }
 
+/// The stream whose announcements are those of the chunks behind the last pass, as they stand.
+pub fn join_announced(chunks: &[Chunk]) -> Vec<u8> {
+    let last = chunks.iter().rposition(Chunk::is_pass).expect("a pass");
+    let trailing: Vec<&Chunk> = chunks[last..].iter().filter(|c| !b"BSRag".contains(&c.kind)).collect();
+    let mut chunks = chunks.to_vec();
+    for announced in chunks.iter_mut().filter(|c| c.kind == b't') {
+        let mut rest = &announced.payload[..];
+        let mut payload = Vec::new();
+        let num_glued = take_varint(&mut rest);
+        payload.extend(varint(num_glued));
+        (0..2 * num_glued).for_each(|_| payload.extend(varint(take_varint(&mut rest))));
+        for chunk in &trailing {
+            payload.push(chunk.kind);
+            payload.extend(varint(chunk.payload.len() as u32));
+        }
+        announced.payload = payload;
+    }
+    join(&chunks)
+}
+
 /// A header chunk of the narrow form: `precision` bits over the unit cube.
 pub fn header(precision: u8) -> Chunk {
     let mut payload = vec![0, precision];

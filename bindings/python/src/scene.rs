@@ -14,6 +14,7 @@ pub fn scene<'py>(
     (tri_mesh, mut attributes): (TriMesh, Attributes),
 ) -> PyResult<Bound<'py, PyAny>> {
     let unpacked = py.detach(|| Scene::unpack(&tri_mesh, &attributes));
+    let unpacked = unpacked.map_err(crate::error::read_error)?;
     let materials = attributes.gltf_materials.take().unwrap_or_default();
     let (meshes, instances): (Vec<_>, _) = match unpacked {
         Some(scene) => {

@@ -259,7 +259,7 @@ impl Gathered {
         ];
         Attributes {
             list: list.into_iter().flatten().collect(),
-            material_libraries: self.material_libraries,
+            material_libraries: self.material_libraries.into(),
             ..Attributes::default()
         }
     }

@@ -16,7 +16,7 @@ pub(in crate::io) fn write(
     attributes: &Attributes,
 ) -> io::Result<WriteReport> {
     let (layout, report) = Layout::new(mesh, attributes);
-    for library in &attributes.material_libraries {
+    for library in attributes.material_libraries.iter() {
         write_name(out, "mtllib", library)?;
     }
     for (vertex, position) in mesh.positions().iter().enumerate() {

@@ -47,8 +47,11 @@ impl Scene {
 
     /// The scene that a mesh packed by [`Scene::pack`] is, at any level; `None` if it is no such mesh. Meshes that
     /// have no triangles have no vertices either.
-    pub fn unpack(mesh: &TriMesh, attributes: &Attributes) -> Option<Self> {
-        let table = attributes.scene.as_ref()?;
+    ///
+    /// # Errors
+    /// If the meshes repeat names out of proportion to how often the stream has them.
+    pub fn unpack(mesh: &TriMesh, attributes: &Attributes) -> Result<Option<Self>, ReadError> {
+        let Some(table) = &attributes.scene else { return Ok(None) };
         let which = attributes.list.iter().position(is_scene_mesh);
         let number = |t: usize| {
             let attribute = &attributes.list[which?];
@@ -63,21 +66,47 @@ impl Scene {
         }
         let listed = attributes.list.iter().enumerate().filter(|&(k, _)| Some(k) != which);
         let listed: Vec<&Attribute> = listed.map(|(_, attribute)| attribute).collect();
-        let libraries = &attributes.material_libraries;
-        let meshes = parts.iter().zip(&table.exponents).map(|(part, &exponent)| {
-            let mut file = part.extract(mesh, &listed, power_of_two(exponent).recip());
-            file.attributes.material_libraries.clone_from(libraries);
-            file
-        });
-        // Instances may repeat what the stream has once, but not beyond reason.
+        // Meshes and instances may repeat what the stream has once, but not beyond reason.
         let num_bytes = size_of::<[f64; 6]>() * mesh.num_vertices();
-        Some(Self {
-            meshes: meshes.collect(),
+        let mut names = NameBytes::of(&listed, num_bytes);
+        let mut meshes = Vec::with_capacity(parts.len());
+        for (part, &exponent) in parts.iter().zip(&table.exponents) {
+            let mut file = part.extract(mesh, &listed, power_of_two(exponent).recip(), &mut names)?;
+            file.attributes.material_libraries = attributes.material_libraries.clone();
+            meshes.push(file);
+        }
+        Ok(Some(Self {
+            meshes,
             instances: table.instances.clone(),
             gltf_materials: attributes.gltf_materials.clone(),
             report: ReadReport::default(),
             num_bytes,
-        })
+        }))
+    }
+}
+
+/// Bytes of names that meshes may still copy from the tables they share.
+struct NameBytes {
+    left: usize,
+}
+
+/// Bytes of names in all meshes for each byte that the stream has, and in any scene.
+const MAX_NAME_COPIES: usize = 16;
+const MIN_MAX_NAME_BYTES: usize = 1 << 20;
+
+impl NameBytes {
+    fn of(attributes: &[&Attribute], num_bytes: usize) -> Self {
+        let names = attributes.iter().flat_map(|attribute| attribute.values.names().unwrap_or_default());
+        let in_tables: usize = names.map(String::len).sum();
+        Self { left: ((num_bytes + in_tables).saturating_mul(MAX_NAME_COPIES)).max(MIN_MAX_NAME_BYTES) }
+    }
+
+    fn take(&mut self, attribute: &Attribute) -> Result<(), ReadError> {
+        let copied: usize = attribute.values.names().unwrap_or_default().iter().map(String::len).sum();
+        let message = || format!("names of `{}` repeated in many meshes", attribute.name);
+        self.left =
+            self.left.checked_sub(copied).ok_or_else(|| ReadError::TooLarge { message: message() })?;
+        Ok(())
     }
 }
 
@@ -96,7 +125,13 @@ struct Part {
 }
 
 impl Part {
-    fn extract(&self, mesh: &TriMesh, attributes: &[&Attribute], factor: f64) -> MeshFile {
+    fn extract(
+        &self,
+        mesh: &TriMesh,
+        attributes: &[&Attribute],
+        factor: f64,
+        names: &mut NameBytes,
+    ) -> Result<MeshFile, ReadError> {
         let mut name_of: HashMap<u32, u32> = HashMap::new();
         let mut vertices = Vec::new();
         let mut name = |v: u32| {
@@ -116,6 +151,7 @@ impl Part {
                 Domain::Corner => selected(attribute, self.triangles.iter().flat_map(corners)),
                 Domain::Face => selected(attribute, self.triangles.iter().copied()),
             };
+            part.iter().try_for_each(|part| names.take(part))?;
             file.attributes.list.extend(part);
         }
         // What has no seam in this mesh may have one in another.
@@ -124,7 +160,7 @@ impl Part {
                 *attribute = smooth;
             }
         }
-        file
+        Ok(file)
     }
 }
 
@@ -180,10 +216,40 @@ mod tests {
         let file = scene.pack().unwrap();
         assert_eq!(file.attributes.scene.as_ref().unwrap().exponents, [0, 3]);
         assert_eq!(file.mesh.positions()[3], [40.0, 0.0, 0.0]);
-        let again = Scene::unpack(&file.mesh, &file.attributes).unwrap();
+        let again = Scene::unpack(&file.mesh, &file.attributes).unwrap().unwrap();
         assert_eq!((&again.meshes, &again.instances), (&scene.meshes, &scene.instances));
         let zero = again.meshes[1].mesh.positions()[0][2];
         assert!(zero == 0.0 && zero.is_sign_negative());
+    }
+
+    /// A mesh for each of many triangles, all with one long name and many libraries.
+    #[test]
+    fn what_meshes_share_is_not_copied_into_each() {
+        let count = 2000;
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for i in 0..count {
+            positions.extend_from_slice(triangle(f64::from(i)).positions());
+            triangles.push([0, 1, 2].map(|k| 3 * i + k));
+        }
+        let mesh = TriMesh::new(positions, triangles).unwrap();
+        let on_faces = |name: &str, values, indices| Attribute {
+            indices: Some(indices),
+            ..Attribute::new(name, Semantic::Material, Domain::Face, 1, values)
+        };
+        let with_name = |length: usize| Attributes {
+            list: vec![
+                on_faces(SCENE_MESH, Values::U32((0..count).collect()), (0..count).collect()),
+                on_faces("m", Values::Names(vec!["x".repeat(length)]), vec![0; count as usize]),
+            ],
+            material_libraries: vec![String::new(); 2000].into(),
+            scene: Some(SceneTable { exponents: vec![0; count as usize], instances: Vec::new() }),
+            ..Attributes::default()
+        };
+        let attributes = with_name(100);
+        let scene = Scene::unpack(&mesh, &attributes).unwrap().unwrap();
+        let libraries = |file: &MeshFile| file.attributes.material_libraries.as_ptr();
+        assert!(scene.meshes.iter().all(|file| libraries(file) == attributes.material_libraries.as_ptr()));
+        assert!(Scene::unpack(&mesh, &with_name(100_000)).is_err());
     }
 
     #[test]
@@ -192,7 +258,7 @@ mod tests {
         let table = file.attributes.scene.as_mut().unwrap();
         table.exponents.truncate(1);
         table.instances.clear();
-        let again = Scene::unpack(&file.mesh, &file.attributes).unwrap();
+        let again = Scene::unpack(&file.mesh, &file.attributes).unwrap().unwrap();
         assert_eq!(again.meshes, scene().meshes[..1]);
     }
 }

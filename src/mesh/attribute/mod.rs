@@ -31,6 +31,7 @@ pub use values::{ScalarType, Values};
 
 use super::{SceneTable, TriMesh};
 use std::fmt;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// In [`Attribute::indices`]: this element has no value.
@@ -274,8 +275,9 @@ impl Attribute {
 pub struct Attributes {
     /// In the order of the file.
     pub list: Vec<Attribute>,
-    /// What OBJ's `mtllib` statements name, each as it was written: files of materials.
-    pub material_libraries: Vec<String>,
+    /// What OBJ's `mtllib` statements name, each as it was written: files of materials. All meshes of a scene share
+    /// them.
+    pub material_libraries: Arc<[String]>,
     /// How the materials of a glTF file look.
     pub gltf_materials: Option<GltfMaterials>,
     /// If the mesh is several meshes of a scene, where they stand.

@@ -1,10 +1,12 @@
 //! What a stream says of its attributes before it has any values (`format/SPEC.md`, section 4.5).
 
 use super::octahedron::Octahedron;
+use crate::bitstream::budget::Budget;
 use crate::bitstream::bytes::Reader;
 #[cfg(any(feature = "encoder", test))]
 use crate::bitstream::bytes::write_varint;
 use crate::mesh::{Domain, MAX_COMPONENTS, ScalarType, Semantic, Values};
+use std::sync::Arc;
 
 /// Most attributes of a stream.
 pub(crate) const MAX_ATTRIBUTES: usize = 64;
@@ -45,7 +47,7 @@ pub(crate) struct Declaration {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Declarations {
     pub(crate) list: Vec<Declaration>,
-    pub(crate) material_libraries: Vec<String>,
+    pub(crate) material_libraries: Arc<[String]>,
     /// Per pass; 0 behind refinements, which bring no elements.
     pub(crate) bytes: Vec<u32>,
 }
@@ -129,18 +131,28 @@ pub(crate) fn bits_of(scalar: ScalarType, x: f64) -> u64 {
 }
 
 impl Declarations {
-    /// Reads a payload; `None` if it is malformed. What is read is no longer than the payload.
-    pub(crate) fn read(payload: &[u8]) -> Option<Self> {
+    /// Reads a payload; `None` if it is malformed or the memory is used up.
+    pub(crate) fn read(payload: &[u8], budget: &mut Budget) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let count = reader.varint()? as usize;
         if count > MAX_ATTRIBUTES {
             return None;
         }
-        let list = (0..count).map(|_| read_declaration(&mut reader)).collect::<Option<_>>()?;
-        let count = reader.varint()?;
-        let material_libraries = (0..count).map(|_| read_string(&mut reader)).collect::<Option<_>>()?;
-        let count = reader.varint()?;
-        let bytes = (0..count).map(|_| reader.varint()).collect::<Option<_>>()?;
+        budget.take(count, BYTES_PER_DECLARATION)?;
+        let mut list = Vec::with_capacity(count);
+        for _ in 0..count {
+            list.push(read_declaration(&mut reader, budget)?);
+        }
+        let count = reader.count(1)?;
+        // They are moved once, to where they are shared.
+        budget.take(count, size_of::<String>())?;
+        let material_libraries = reader.strings(count, budget)?.into();
+        let count = reader.count(1)?;
+        budget.take(count, size_of::<u32>())?;
+        let mut bytes = Vec::with_capacity(count);
+        for _ in 0..count {
+            bytes.push(reader.varint()?);
+        }
         reader.is_empty().then_some(Self { list, material_libraries, bytes })
     }
 
@@ -157,13 +169,11 @@ impl Declarations {
     }
 }
 
-fn read_string(reader: &mut Reader) -> Option<String> {
-    let len = reader.varint()? as usize;
-    String::from_utf8(reader.take(len)?.to_vec()).ok()
-}
+/// Memory of a declaration without its strings and tables.
+const BYTES_PER_DECLARATION: usize = size_of::<Declaration>() + MAX_COMPONENTS * size_of::<f64>();
 
-fn read_declaration(reader: &mut Reader) -> Option<Declaration> {
-    let name = read_string(reader)?;
+fn read_declaration(reader: &mut Reader, budget: &mut Budget) -> Option<Declaration> {
+    let name = reader.string(budget)?;
     let semantic = match reader.u8()? {
         0 => Semantic::Generic,
         1 => Semantic::Normal,
@@ -185,12 +195,17 @@ fn read_declaration(reader: &mut Reader) -> Option<Declaration> {
     if flags & !(NORMALIZED | HAS_MISSING) != 0 || !(1..=most).contains(&num_components) {
         return None;
     }
-    let coding = read_coding(reader, scalar, num_components)?;
+    let coding = read_coding(reader, scalar, num_components, budget)?;
     let (is_normalized, has_missing) = (flags & NORMALIZED != 0, flags & HAS_MISSING != 0);
     Some(Declaration { name, semantic, domain, num_components, is_normalized, scalar, has_missing, coding })
 }
 
-fn read_coding(reader: &mut Reader, scalar: Option<ScalarType>, num_components: usize) -> Option<Coding> {
+fn read_coding(
+    reader: &mut Reader,
+    scalar: Option<ScalarType>,
+    num_components: usize,
+    budget: &mut Budget,
+) -> Option<Coding> {
     let coding = match (reader.u8()?, scalar) {
         (0, Some(_)) => {
             let bits = u32::from(reader.u8()?);
@@ -213,9 +228,12 @@ fn read_coding(reader: &mut Reader, scalar: Option<ScalarType>, num_components: 
                 return None;
             }
             let rows = match scalar {
-                None => Values::Names((0..count).map(|_| read_string(reader)).collect::<Option<_>>()?),
+                None => Values::Names(reader.strings(count, budget)?),
                 Some(scalar) => {
                     let mut rows = Values::new(scalar);
+                    // The array doubles while it grows.
+                    let num_values = (count * num_components).min(reader.len());
+                    budget.take(num_values, 3 * scalar.num_bytes())?;
                     for _ in 0..count * num_components {
                         let bytes = reader.take(scalar.num_bytes())?;
                         rows.push_bits(bytes.iter().rev().fold(0, |bits, &b| bits << 8 | u64::from(b)));
@@ -282,6 +300,10 @@ fn write_declaration(out: &mut Vec<u8>, declaration: &Declaration) {
 mod tests {
     use super::*;
 
+    fn read(payload: &[u8]) -> Option<Declarations> {
+        Declarations::read(payload, &mut Budget::new(0, u64::MAX))
+    }
+
     fn all_codings() -> Declarations {
         let declaration = |name: &str, semantic, domain, scalar, num_components, coding| Declaration {
             name: name.into(),
@@ -310,7 +332,7 @@ mod tests {
                 declaration("usemtl", Semantic::Material, Domain::Face, None, 1, names),
                 declaration("ids", Semantic::Generic, Domain::Face, Some(ScalarType::I16), 2, numbers),
             ],
-            material_libraries: vec!["a.mtl".into()],
+            material_libraries: Arc::new(["a.mtl".to_owned()]),
             bytes: vec![7, 0, 300],
         }
     }
@@ -319,9 +341,9 @@ mod tests {
     fn declarations_return_and_cut_ones_are_refused() {
         let declared = all_codings();
         let payload = declared.write();
-        assert_eq!(Declarations::read(&payload), Some(declared));
+        assert_eq!(read(&payload), Some(declared));
         for cut in 0..payload.len() {
-            assert_eq!(Declarations::read(&payload[..cut]), None, "{cut} bytes");
+            assert_eq!(read(&payload[..cut]), None, "{cut} bytes");
         }
     }
 
@@ -333,7 +355,7 @@ mod tests {
             for bit in 0..8 {
                 let mut bad = payload.clone();
                 bad[at] ^= 1 << bit;
-                refused += usize::from(Declarations::read(&bad).is_none());
+                refused += usize::from(read(&bad).is_none());
             }
         }
         assert!(refused > payload.len() / 2, "{refused}");

@@ -2,8 +2,10 @@
 //!
 //! Each takes any bytes and panics if a promise of the library does not hold.
 
+mod chunks;
+
 use crate::bitstream::announced::Announced;
-use crate::bitstream::chunk::{self, Frame, kind};
+use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::header::{self, Action, Grid, Header, Pass};
 use crate::bitstream::mixer::Mixing;
 use crate::bitstream::mixture::Mixture;
@@ -13,22 +15,35 @@ use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, Residu
 use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format, TerrainOptions};
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, Values, has_three_vertices};
-use crate::passes::attribute::Declarations;
 use crate::{
     DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Profile, Step,
     StreamInfo, TriMesh, Update, encode_with_attributes,
 };
 
-const SMALL: Limits = Limits { max_memory: 64 << 20, max_vertices: 100_000, max_levels: 64 };
+const SMALL: Limits = Limits { max_memory: 64 << 20, max_vertices: 100_000, max_levels: 64, max_work: None };
 /// Meshes up to here are walked after every pass, larger ones after the last.
 const CHECKED_VERTICES: usize = 500;
 
 /// Any bytes are a mesh, a coarser mesh, or an error that keeps the last mesh.
 pub fn decode(data: &[u8]) {
-    let stream = stream_from(data);
-    let _ = StreamInfo::read(&stream);
+    check_stream(&stream_from(data));
+}
+
+/// Chunks that are moved, doubled, left out, exchanged, renamed or changed are that, too. The first byte counts the changes,
+/// three bytes each; a stream follows. Checksums, sizes, and what announces them are mended, so that damage reaches deep.
+pub fn rearrange(data: &[u8]) {
+    let Some((&head, rest)) = data.split_first() else { return };
+    let Some((changes, stream)) = rest.split_at_checked(3 * usize::from(head % 16)) else { return };
+    let mut stream = chunks::Stream::read(stream);
+    changes.as_chunks::<3>().0.iter().for_each(|&change| stream.change(change));
+    stream.mend(head & 16 == 0);
+    check_stream(&stream.write());
+}
+
+fn check_stream(stream: &[u8]) {
+    let _ = StreamInfo::read(stream);
     let mut decoder = Decoder::new(SMALL);
-    if decoder.feed(&stream).is_err() {
+    if decoder.feed(stream).is_err() {
         return;
     }
     let mut good = None;
@@ -59,8 +74,13 @@ pub fn decode(data: &[u8]) {
     }
     if let Some((preview, attributes)) = decoder.preview_with_attributes() {
         assert_fit(&attributes, &preview);
+        if let Ok(Some(scene)) = io::Scene::unpack(&preview, &attributes) {
+            scene.meshes.iter().for_each(|file| assert_fit(&file.attributes, &file.mesh));
+        }
         assert_sound(preview);
     }
+    let allowed = (1 << 18) + 128 * stream.len() as u64;
+    assert!(decoder.work_done() <= allowed + (1 << 12), "{} units of {allowed}", decoder.work_done());
 }
 
 fn assert_fit(attributes: &Attributes, mesh: &TriMesh) {
@@ -415,82 +435,14 @@ fn stream_from(data: &[u8]) -> Vec<u8> {
         None => Vec::new(),
         Some((mode, data)) => match mode % 3 {
             0 => data.to_vec(),
-            1 => reframe(data),
+            1 => {
+                let mut stream = chunks::Stream::read(data);
+                stream.mend(false);
+                stream.write()
+            }
             _ => made_up(data),
         },
     }
-}
-
-/// Repairs signature, lengths, checksums, and the sizes in the table of passes.
-fn reframe(data: &[u8]) -> Vec<u8> {
-    let mut rest = data.get(chunk::SIGNATURE.len() + 1..).unwrap_or_default();
-    let mut grid = None;
-    let mut table = Vec::new();
-    let mut done = 0;
-    let mut chunks: Vec<(u8, Vec<u8>)> = Vec::new();
-    while let Some((&kind, after)) = rest.split_first() {
-        let next = table.get(done).map(|row: &Pass| (kind, row.bytes));
-        let payload = match chunk::parse(rest, next) {
-            Frame::Chunk { payload, size, .. } => {
-                rest = &rest[size..];
-                payload
-            }
-            Frame::Incomplete { .. } | Frame::BadLength | Frame::OutOfPlace => {
-                rest = &[];
-                after
-            }
-        };
-        done += usize::from(kind::is_pass(kind));
-        match (kind, grid) {
-            (kind::HEADER, None) => grid = Header::read(payload).map(|header| header.grid),
-            (kind::PASSES, Some(grid)) => {
-                table = pass_table::read_passes(payload, &grid).unwrap_or_default();
-            }
-            _ => {}
-        }
-        chunks.push((kind, payload.to_vec()));
-    }
-    let sizes = chunks.iter().filter(|c| kind::is_pass(c.0)).map(|c| c.1.len() as u32);
-    table.iter_mut().zip(sizes).for_each(|(row, size)| row.bytes = size);
-    let mut bytes = chunk::SIGNATURE.to_vec();
-    bytes.push(chunk::VERSION);
-    for (kind, payload) in &chunks {
-        let repaired = match *kind {
-            kind::PASSES if !table.is_empty() => Some(pass_table::write_passes(&table)),
-            kind::ANNOUNCED => resize_announced(payload, &chunks),
-            kind::DECLARATIONS => Declarations::read(payload).map(|declared| {
-                let bytes = value_sizes(&chunks);
-                Declarations { bytes, ..declared }.write()
-            }),
-            _ => None,
-        };
-        chunk::write(&mut bytes, *kind, repaired.as_ref().unwrap_or(payload));
-    }
-    bytes
-}
-
-/// Bytes of the values that follow each pass.
-fn value_sizes(chunks: &[(u8, Vec<u8>)]) -> Vec<u32> {
-    let mut sizes = Vec::new();
-    for (kind, payload) in chunks {
-        match *kind {
-            kind::BASE | kind::SPLIT | kind::REFINE => sizes.push(0),
-            kind::ATTRIBUTES => sizes.iter_mut().last().into_iter().for_each(|s| *s = payload.len() as u32),
-            _ => {}
-        }
-    }
-    sizes
-}
-
-/// The announced chunks with the sizes of those that are there; `None` if they make no sense.
-fn resize_announced(payload: &[u8], chunks: &[(u8, Vec<u8>)]) -> Option<Vec<u8>> {
-    let mut announced = Announced::read(payload)?;
-    let sizes = |kind: u8| chunks.iter().filter(move |c| c.0 == kind).map(|c| c.1.len() as u32);
-    announced.glue.iter_mut().zip(sizes(kind::GLUE)).for_each(|(glue, size)| glue.1 = size);
-    for (kind, bytes) in &mut announced.trailing {
-        *bytes = sizes(*kind).next().unwrap_or(*bytes);
-    }
-    Some(announced.write())
 }
 
 /// A well-framed stream whose counts and payloads are the input.

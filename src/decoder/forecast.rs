@@ -1,0 +1,52 @@
+//! What a stream will cost, from its table of passes alone (`format/SPEC.md`, section 10): one that asks for more work
+//! than its bytes earn is refused before it has begun.
+
+use super::frame::{StreamInfo, TrailingKind};
+use crate::DecodeError;
+use crate::limits::Limits;
+use crate::mesh::Domain;
+use crate::passes::attribute::Declarations;
+use crate::passes::cost::{self, Counts};
+
+/// Units of work that may be done by the time that so many bytes of the stream have been read.
+pub(super) fn allowed(limits: &Limits, bytes: u64) -> u64 {
+    limits.max_work.unwrap_or(cost::FREE + cost::PER_BYTE * bytes)
+}
+
+/// Checks what each pass and each chunk behind the last one costs against what the bytes up to its end earn.
+pub(super) fn check(info: &StreamInfo, declared: &Declarations, limits: &Limits) -> Result<(), DecodeError> {
+    let channels = declared.list.iter().map(|one| one.num_channels() as u64).sum();
+    let (mut work, mut counts) = (0, Counts::default());
+    for pass in &info.passes {
+        work += cost::pass(&pass.row, counts, channels);
+        counts = counts.after(&pass.row);
+        work += if pass.glue_bytes > 0 { cost::glue(counts) } else { 0 };
+        Limits::check("work", work, allowed(limits, pass.end))?;
+    }
+    for trailing in &info.trailing {
+        work += of_trailing(trailing.kind, counts, declared);
+        Limits::check("work", work, allowed(limits, trailing.end))?;
+    }
+    Ok(())
+}
+
+/// Units of a chunk behind the last pass, which left a mesh of `finest`; without what lies loose.
+pub(crate) fn of_trailing(kind: TrailingKind, finest: Counts, declared: &Declarations) -> u64 {
+    match kind {
+        TrailingKind::Exact => cost::exact(finest),
+        TrailingKind::Order => cost::order(finest),
+        TrailingKind::Values => {
+            let elements = |domain| match domain {
+                Domain::Vertex => finest.vertices,
+                Domain::Corner => 3 * finest.faces,
+                Domain::Face => finest.faces,
+            };
+            declared
+                .list
+                .iter()
+                .map(|one| cost::values(elements(one.domain), one.num_components as u64))
+                .sum()
+        }
+        _ => 0,
+    }
+}
