@@ -171,3 +171,111 @@ fn rubbish_payloads_take_what_their_counts_need() {
         }
     }
 }
+
+/// Beyond the limit: the table of passes, which may have 4097 rows, and tables of the coder that are made once.
+const SLACK: usize = 1 << 20;
+
+/// Decodes piece by piece within several limits, and measures.
+fn check_limits(what: &str, stream: &[u8]) -> usize {
+    let mut num_refused = 0;
+    for max_memory in [128 << 10, 1 << 20, 3 << 20, 12 << 20, 40 << 20] {
+        let limits = Limits { max_memory, ..Limits::default() };
+        let decode = || {
+            let mut decoder = Decoder::new(limits);
+            let error = stream.chunks(1 << 12).find_map(|bytes| decoder.push(bytes).err());
+            matches!(error, Some(DecodeError::Limit { what: "memory", .. }))
+        };
+        let (is_refused, held) = peak(decode);
+        assert!(held <= max_memory as usize + SLACK, "{what}: {held} bytes of {max_memory}");
+        num_refused += usize::from(is_refused);
+    }
+    num_refused
+}
+
+fn golden() -> Vec<(String, Vec<u8>)> {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("format/golden");
+    let folders = if cfg!(feature = "fast") { vec![root.join("fast"), root] } else { vec![root] };
+    let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap());
+    let paths = files.map(|entry| entry.unwrap().path());
+    let streams = paths.filter(|path| path.extension().is_some_and(|ending| ending == "lwc"));
+    streams.map(|path| (path.display().to_string(), std::fs::read(&path).unwrap())).collect()
+}
+
+#[test]
+fn no_golden_stream_takes_more_memory_than_is_allowed_whatever_happens_to_it() {
+    let _turn = turn();
+    warm_up();
+    let mut random = Random(3);
+    let streams = golden();
+    assert!(streams.len() > 30);
+    for (name, stream) in streams {
+        check_limits(&name, &stream);
+        let parts = chunks::split(&stream);
+        for round in 0..12 {
+            let mut mutated = parts.clone();
+            for _ in 0..1 + round % 3 {
+                let place = random.next() as usize % mutated.len();
+                let Chunk { kind, payload } = &mut mutated[place];
+                if *kind != b'L' && !payload.is_empty() {
+                    let at = random.next() as usize % payload.len();
+                    payload[at] = [0, 0x7f, 0xff, random.next() as u8][random.next() as usize % 4];
+                }
+            }
+            check_limits(&format!("{name}, round {round}"), &chunks::join_resized(&mutated));
+        }
+    }
+}
+
+/// A golden stream with more in front of its passes.
+fn with_head(added: &[Chunk], profile: u8) -> Vec<u8> {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("format/golden");
+    let mut parts = chunks::split(&std::fs::read(root.join("single-triangle.lwc")).unwrap());
+    parts[0].payload[0] = parts[0].payload[0] & 3 | profile << 2;
+    let table = parts.iter().position(|chunk| chunk.kind == b'L').unwrap();
+    parts.splice(table..table, added.iter().cloned());
+    chunks::join(&parts)
+}
+
+/// So many things of `bytes` each, behind their number.
+fn many(count: usize, bytes: &[u8]) -> Vec<u8> {
+    [chunks::varint(count as u32), bytes.repeat(count)].concat()
+}
+
+#[test]
+fn what_stands_before_the_passes_is_counted_too() {
+    let _turn = turn();
+    warm_up();
+    let n = 200_000;
+    let scene = |meshes, instances| {
+        let payload = [many(meshes, &[0]), many(instances, &[0, 0, 0])].concat();
+        Chunk { kind: b'n', payload }
+    };
+    let declarations = |attributes: Vec<u8>, libraries: Vec<u8>, passes: Vec<u8>| Chunk {
+        kind: b'd',
+        payload: [attributes, libraries, passes].concat(),
+    };
+    // A number of a vertex, uniform in one bit.
+    let number = [&[0, 0, 0, 0, 1, 1, 0, 1][..], &[0; 16]].concat();
+    // Names of faces: 60,000 empty ones.
+    let names = [&[0, 4, 2, 0, 8, 1, 2][..], &many(60_000, &[0])].concat();
+    let cases = [
+        ("instances", with_head(&[scene(1, n)], 0), 3),
+        ("meshes", with_head(&[scene(n, 1)], 0), 3),
+        ("images", with_head(&[Chunk { kind: b'm', payload: [&[0][..], &many(n, &[0])].concat() }], 0), 2),
+        ("libraries", with_head(&[declarations(vec![0], many(n, &[0]), many(1, &[0]))], 0), 3),
+        ("tables of names", with_head(&[declarations(many(9, &names), vec![0], many(1, &[1]))], 0), 3),
+        ("passes", with_head(&[declarations(vec![0], vec![0], many(n, &[0]))], 0), 1),
+        ("models", with_head(&[declarations(many(64, &number), vec![0], many(1, &[9]))], 0), 4),
+        ("large models", with_head(&[declarations(many(64, &number), vec![0], many(1, &[9]))], 2), 5),
+        ("compensation", with_head(&[Chunk { kind: b'c', payload: vec![0; n] }], 0), 1),
+        (
+            "all of that",
+            with_head(&[scene(n / 2, n / 2), declarations(many(3, &names), many(n, &[0]), many(1, &[1]))], 2),
+            4,
+        ),
+    ];
+    for (what, stream, least) in cases {
+        let num_refused = check_limits(what, &stream);
+        assert!(num_refused >= least, "{what}: refused {num_refused} times");
+    }
+}

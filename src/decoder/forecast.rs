@@ -13,8 +13,9 @@ pub(super) fn allowed(limits: &Limits, bytes: u64) -> u64 {
     limits.max_work.unwrap_or(cost::FREE + cost::PER_BYTE * bytes)
 }
 
-/// Checks what each pass and each chunk behind the last one costs against what the bytes up to its end earn.
-pub(super) fn check(info: &StreamInfo, declared: &Declarations, limits: &Limits) -> Result<(), DecodeError> {
+/// Checks what each pass and each chunk behind the last one costs against what the bytes up to its end earn. Returns the
+/// sum.
+pub(super) fn check(info: &StreamInfo, declared: &Declarations, limits: &Limits) -> Result<u64, DecodeError> {
     let channels = declared.list.iter().map(|one| one.num_channels() as u64).sum();
     let (mut work, mut counts) = (0, Counts::default());
     for pass in &info.passes {
@@ -27,7 +28,7 @@ pub(super) fn check(info: &StreamInfo, declared: &Declarations, limits: &Limits)
         work += of_trailing(trailing.kind, counts, declared);
         Limits::check("work", work, allowed(limits, trailing.end))?;
     }
-    Ok(())
+    Ok(work)
 }
 
 /// Units of a chunk behind the last pass, which left a mesh of `finest`; without what lies loose.

@@ -20,6 +20,7 @@ pub struct StreamInfo {
     pub(super) attributes: Vec<AttributeInfo>,
     pub(super) trailing: Vec<TrailingInfo>,
     pub(super) scene: Option<SceneTable>,
+    pub(super) work: u64,
 }
 
 /// What a stream says of one of its attributes.
@@ -231,6 +232,12 @@ impl StreamInfo {
     pub fn total_bytes(&self) -> u64 {
         let last_pass = self.passes.last().map(|p| p.end);
         self.trailing.last().map(|t| t.end).or(last_pass).unwrap_or(0)
+    }
+
+    /// Most units of work that decoding takes, as [`Decoder::work_done`](crate::Decoder::work_done) counts them; what lies
+    /// loose not counted. See [`Limits::max_work`].
+    pub fn work(&self) -> u64 {
+        self.work
     }
 
     /// The attributes, in the order of [`Decoder::attributes`](crate::Decoder::attributes).

@@ -117,12 +117,13 @@ impl Head {
             attributes: declared.list.iter().map(AttributeInfo::of).collect(),
             trailing,
             scene: self.scene.take(),
+            work: 0,
         };
         let models = attributes::bytes_of_models(declared, info.profile.mixing());
         let held = source.frames.memory() + self.held;
         Limits::check("memory", held + models, source.limits.max_memory)?;
-        forecast::check(&info, declared, source.limits)?;
-        Ok(info)
+        let work = forecast::check(&info, declared, source.limits)?;
+        Ok(StreamInfo { work, ..info })
     }
 
     /// The passes with all that belongs to them, and what follows the last one.
