@@ -1,6 +1,13 @@
 //! Progressive codec for triangle meshes.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+// Streams decode to the same bits everywhere because each operation on floats rounds once, to the size of its type.
+#[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
+compile_error!(
+    "lwc needs SSE2 on 32-bit x86 (target i686, not i586): x87 registers keep more bits than f32 and f64 have, so that \
+     streams would decode to other meshes than they were made of"
+);
+
 mod bitstream;
 mod decoder;
 #[cfg(feature = "encoder")]

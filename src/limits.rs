@@ -8,7 +8,8 @@ use crate::error::DecodeError;
 /// is allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Most bytes of memory the decoder may hold, its buffer included. Default 4 GiB. What callers take out of the
+    /// Most bytes of memory the decoder may hold, its buffer included. Default 4 GiB, 1 GiB where pointers
+    /// have 32 bits. What callers take out of the
     /// decoder as a copy, such as [`Decoder::preview`](crate::Decoder::preview), is not counted.
     pub max_memory: u64,
     /// Most vertices of the finest mesh decoded. Default 2²⁵, about 33 million.
@@ -23,9 +24,12 @@ pub struct Limits {
     pub max_work: Option<u64>,
 }
 
+/// A process of 32 bits cannot hold 4 GiB: it would fail before the limit does.
+const DEFAULT_MEMORY: u64 = if cfg!(target_pointer_width = "32") { 1 << 30 } else { 4 << 30 };
+
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_memory: 4 << 30, max_vertices: 1 << 25, max_levels: 128, max_work: None }
+        Self { max_memory: DEFAULT_MEMORY, max_vertices: 1 << 25, max_levels: 128, max_work: None }
     }
 }
 

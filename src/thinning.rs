@@ -184,7 +184,7 @@ impl Saliency {
 
 /// By the share of the vertices whose descriptor is less.
 fn weight(rank: f64) -> f64 {
-    (2.0 * rank - 1.0).exp2()
+    libm::exp2(2.0 * rank - 1.0)
 }
 
 /// A number of 32 bits by which places anywhere are told apart evenly.

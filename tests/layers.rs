@@ -221,3 +221,31 @@ fn the_search_of_these_tests_finds_paths() {
     let found: Vec<String> = first_segments(code, "crate::").into_iter().collect();
     assert_eq!(found, ["DecodeError", "a", "c", "d"]);
 }
+
+/// What the standard library leaves to the platform's own: the last bits differ.
+const OF_THE_PLATFORM: [&str; 19] = [
+    "acos", "asin", "atan", "atan2", "cbrt", "cos", "exp", "exp2", "exp_m1", "hypot", "ln", "ln_1p", "log",
+    "log10", "log2", "powf", "sin", "sin_cos", "tan",
+];
+
+/// Modules whose numbers go into no stream.
+const ARE_NO_BYTES: [&str; 8] =
+    ["cli", "decomposition", "experiment", "fuzzing", "io", "main", "metrics", "render"];
+
+#[test]
+fn no_byte_of_a_stream_comes_from_a_function_of_the_platform() {
+    let mut checked = 0;
+    for (module, path, code) in sources() {
+        if ARE_NO_BYTES.contains(&&*module) {
+            continue;
+        }
+        let code = code.split("#[cfg(test)]\nmod tests").next().unwrap();
+        for name in OF_THE_PLATFORM {
+            let calls = [format!(".{name}("), format!("f64::{name}"), format!("f32::{name}")];
+            let found = calls.iter().find(|call| code.contains(*call));
+            assert_eq!(found, None, "{}: `libm` has it, with the same bits everywhere", path.display());
+        }
+        checked += 1;
+    }
+    assert!(checked > 100, "only {checked} files");
+}

@@ -27,7 +27,7 @@ impl Compensation {
     pub(crate) fn read(payload: &[u8], count: usize) -> Option<Vec<Self>> {
         let mut reader = BitReader::new(payload);
         let mut now = Self::NONE;
-        let mut all = Vec::with_capacity(count.min(8 * payload.len()));
+        let mut all = Vec::with_capacity(count.min(payload.len().saturating_mul(8)));
         for _ in 0..count {
             if reader.bit()? {
                 for weight in [&mut now.own, &mut now.around] {

@@ -85,12 +85,13 @@ pub(crate) struct StreamReader {
 impl StreamReader {
     /// Unpacks the payload of a pass that brings so many vertices; its streams may take `most` bytes. `None`
     /// if it is no such payload.
-    pub(crate) fn new(payload: &[u8], vertices: u32, most: usize) -> Option<Self> {
+    pub(crate) fn new(payload: &[u8], vertices: u32, most: u64) -> Option<Self> {
         let mut reader = Reader::new(payload);
-        let (method, size) = (reader.u8()?, reader.varint()? as usize);
-        if size > most || size >= 1 << 28 {
+        let (method, size) = (reader.u8()?, reader.varint()?);
+        if u64::from(size) > most || size >= 1 << 28 {
             return None;
         }
+        let size = size as usize;
         let bytes = match method {
             STORED => reader.take(size)?.to_vec(),
             PACKED => {

@@ -248,9 +248,9 @@ impl Running {
 
 /// Bytes that the streams of a pass may take: a bit for each question that the walk can ask, 16 bytes per
 /// vertex that gets coordinates, and the head.
-fn most_stream_bytes(pass: &PassInfo) -> usize {
+fn most_stream_bytes(pass: &PassInfo) -> u64 {
     let new = if pass.kind == PassKind::Split { pass.row.vertices } else { 0 };
-    1024 + pass.faces as usize + pass.vertices as usize + 16 * new as usize
+    1024 + u64::from(pass.faces) + u64::from(pass.vertices) + 16 * u64::from(new)
 }
 
 /// At the end of a pass what was read must have been there.

@@ -10,7 +10,7 @@ pub(super) fn evaluate(surface: &Surface, window: &Window, progress: &(dyn Fn(us
         fit_along_mean_normal(local).map_or(0.0, |paraboloid| {
             let (mean, half_difference) = paraboloid.curvatures();
             // κ1² + κ2² = 2H² + 2(H² − K).
-            mean.hypot(half_difference)
+            libm::hypot(mean, half_difference)
         })
     })
 }

@@ -8,7 +8,8 @@
 //!   *finest* mesh, so no value depends on the units of the model. If l̄ is 0 every value is 0.
 //! - **Topology.** Faces with a repeated index are dropped. Two vertices are neighbours when a remaining face
 //!   holds both, whatever the manifoldness. Vertices without neighbours have the value 0.
-//! - **Determinism.** The same input gives the same bits, whatever the number of threads.
+//! - **Determinism.** The same input gives the same bits, whatever the number of threads and the platform: what a
+//!   platform's own library computes (exp, hypot) comes from `libm`.
 
 use std::fmt;
 use std::str::FromStr;

@@ -64,7 +64,7 @@ impl Paraboloid {
         let s12 = (m - f1 / e1 * l) / w;
         let s22 = (n * e1 * e1 - 2.0 * f1 * e1 * m + f1 * f1 * l) / (e1 * w2);
         let mean = (e1 * n - 2.0 * f1 * m + g1 * l) / (2.0 * w2);
-        (mean, (0.5 * (s11 - s22)).hypot(s12))
+        (mean, libm::hypot(0.5 * (s11 - s22), s12))
     }
 }
 

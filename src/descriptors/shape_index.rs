@@ -19,7 +19,7 @@ pub(super) fn evaluate(surface: &Surface, window: &Window, progress: &(dyn Fn(us
             if mean.abs() + half_difference < FLAT {
                 0.0
             } else {
-                FRAC_2_PI * mean.abs().atan2(half_difference)
+                FRAC_2_PI * libm::atan2(mean.abs(), half_difference)
             }
         })
     })

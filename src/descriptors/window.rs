@@ -197,7 +197,7 @@ impl<'a> LocalWindow<'a> {
     pub(super) fn weighted(&self) -> impl Iterator<Item = (usize, DVec3, f64)> {
         (0..self.len).map(|i| {
             let d = DVec3::new(self.dx[i], self.dy[i], self.dz[i]);
-            (self.members[i] as usize, d, (d.length_squared() * self.minus_inverse_width).exp())
+            (self.members[i] as usize, d, libm::exp(d.length_squared() * self.minus_inverse_width))
         })
     }
 

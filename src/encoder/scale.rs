@@ -24,7 +24,7 @@ pub(super) fn cheapest_scale(
         let width = |&i: &usize| {
             let [middle, half] = around(i);
             let [low, high] = ladder.range(middle, half);
-            ((high - low) as f64 + 1.0).log2()
+            libm::log2((high - low) as f64 + 1.0)
         };
         sample.iter().map(width).sum::<f64>() / sample.len() as f64
     };

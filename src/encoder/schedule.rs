@@ -29,8 +29,8 @@ const ROUNDING_SHARE: f64 = 0.25;
 pub(super) fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: Option<f64>) -> Schedule {
     let needed = |level: usize| {
         let hidden = match steps_per_edge {
-            Some(steps) => (hierarchy.mean_edges[level] / steps).max(1.0).log2(),
-            None => 0.5 * (12.0 * ROUNDING_SHARE * hierarchy.errors[level]).max(1.0).log2(),
+            Some(steps) => libm::log2((hierarchy.mean_edges[level] / steps).max(1.0)),
+            None => 0.5 * libm::log2((12.0 * ROUNDING_SHARE * hierarchy.errors[level]).max(1.0)),
         };
         precision.saturating_sub(hidden as u32).max(1)
     };

@@ -273,7 +273,9 @@ pub fn read_bytes(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
 fn read_limited(source: impl Read, size_hint: u64) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     if size_hint <= MAX_FILE_BYTES {
-        bytes.try_reserve_exact(size_hint as usize).map_err(io::Error::other)?;
+        bytes
+            .try_reserve_exact(usize::try_from(size_hint).unwrap_or(usize::MAX))
+            .map_err(io::Error::other)?;
         source.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes)?;
     }
     if size_hint.max(bytes.len() as u64) > MAX_FILE_BYTES {

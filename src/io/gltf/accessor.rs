@@ -112,7 +112,10 @@ impl<'a> Store<'a> {
                 let run = self.run(view, accessor.byte_offset, count, size, place)?;
                 (0..count).for_each(|k| push_numbers(&mut values, scalar, run.element(k)));
             }
-            None => (0..count * num_components).for_each(|_| values.push_bits(0)),
+            None => {
+                let num_numbers = count.checked_mul(num_components).ok_or_else(too_large)?;
+                (0..num_numbers).for_each(|_| values.push_bits(0));
+            }
         }
         if let Some(sparse) = &accessor.sparse {
             let num = usize::try_from(sparse.count).map_err(|_| too_large())?;

@@ -93,7 +93,8 @@ pub(super) fn lists(carried: &GltfMaterials, mut view: impl FnMut(&[u8]) -> usiz
     });
     if let Some(Value::Array(images)) = json.get_mut("images") {
         for image in images.iter_mut().filter_map(Value::as_object_mut) {
-            let index = image.get("bufferView").and_then(Value::as_u64).map(|index| index as usize);
+            let index = image.get("bufferView").and_then(Value::as_u64);
+            let index = index.map(|index| usize::try_from(index).unwrap_or(usize::MAX));
             if let Some(index) = index {
                 match carried.images.get(index) {
                     Some(bytes) => image.insert("bufferView".to_owned(), view(bytes).into()),

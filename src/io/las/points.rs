@@ -225,12 +225,11 @@ fn unpack(
 ) -> Result<(), ReadError> {
     check_laz(header, laz, bytes)?;
     let most = (bytes.len() as u64).saturating_mul(MAX_POINTS_PER_BYTE).max(MIN_MAX_POINTS);
-    if header.num_points > most {
-        return Err(ReadError::TooLarge { message: format!("{} points", header.num_points) });
-    }
+    let num_points = usize::try_from(header.num_points).ok().filter(|_| header.num_points <= most);
+    let too_large = || ReadError::TooLarge { message: format!("{} points", header.num_points) };
+    let mut num_left = num_points.ok_or_else(too_large)?;
     let mut source = Cursor::new(bytes);
     source.seek(SeekFrom::Start(header.data_offset as u64))?;
-    let mut num_left = header.num_points as usize;
     // The crate was not written for hostile bytes, and panics on some.
     let unpacked = catch_unwind(AssertUnwindSafe(|| {
         let mut unpacker =

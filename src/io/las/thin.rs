@@ -39,12 +39,12 @@ pub(super) fn keep_at_most(points: &mut Vec<Point>, most: usize, scale: [f64; 3]
     // From sizes where every point has its cell to one where the four around the origin hold all.
     let finest = scale[0].min(scale[1]);
     let widest = 2.0 * scale[0].max(scale[1]) * f64::from(u32::MAX);
-    let (mut low, mut high) = (finest.ln(), widest.ln());
+    let (mut low, mut high) = (libm::log(finest), libm::log(widest));
     for _ in 0..SEARCH_STEPS {
         let middle = 0.5 * (low + high);
-        if num_cells(in_steps(middle.exp())) > most { low = middle } else { high = middle }
+        if num_cells(in_steps(libm::exp(middle))) > most { low = middle } else { high = middle }
     }
-    keep_one_per_cell(points, in_steps(high.exp()));
+    keep_one_per_cell(points, in_steps(libm::exp(high)));
     // Fewer than four may be wanted.
     points.truncate(most);
 }

@@ -74,7 +74,7 @@ fn read_vertices(body: &mut Body, element: &Element, builder: &mut MeshBuilder) 
         }
         Ok(position)
     };
-    builder.positions.reserve_exact(body.room_for(element.count, 3));
+    reserve(&mut builder.positions, body.room_for(element.count, 3))?;
     for index in 0..element.count {
         let position =
             read_vertex(body, &mut attributes).map_err(|fault| body.error(fault, element, index))?;
@@ -87,6 +87,12 @@ fn read_vertices(body: &mut Body, element: &Element, builder: &mut MeshBuilder) 
     }
     builder.attributes.list.append(&mut attributes);
     Ok(())
+}
+
+/// Makes room for as many elements as a file may have; where addresses have 32 bits there may be none.
+fn reserve<T>(list: &mut Vec<T>, count: usize) -> Result<(), ReadError> {
+    let too_large = |_| ReadError::TooLarge { message: format!("no memory for {count} elements") };
+    list.try_reserve_exact(count).map_err(too_large)
 }
 
 /// The list of vertex indices among the properties of an element.
@@ -169,7 +175,7 @@ fn read_faces(
             }
             Ok::<(), Fault>(())
         };
-    builder.triangles.reserve_exact(body.room_for(element.count, 4));
+    reserve(&mut builder.triangles, body.room_for(element.count, 4))?;
     let mut corners = Vec::new();
     for index in 0..element.count {
         numbers.clear();

@@ -42,7 +42,7 @@ impl Scene {
         let largest = places.map(|instance| scale(instance.transform)).fold(0.0, f64::max);
         // A mesh that is nowhere is as large as it is.
         let scale = if largest > 0.0 && largest.is_finite() { largest } else { 1.0 };
-        scale.log2().round().clamp(-100.0, 100.0) as i8
+        libm::log2(scale).round().clamp(-100.0, 100.0) as i8
     }
 
     /// The scene that a mesh packed by [`Scene::pack`] is, at any level; `None` if it is no such mesh. Meshes that
