@@ -180,6 +180,44 @@ fn failed_writes_leave_what_was_there() {
     assert!(missing.is_err());
 }
 
+/// Programs that are told to end call it from another thread.
+#[test]
+fn files_at_work_can_be_abandoned() {
+    let directory = tempfile::tempdir().unwrap();
+    let num_files = || fs::read_dir(&directory).unwrap().count();
+    let path = directory.path().join("model.bin");
+    let written = io::write_atomic(&path, |out| {
+        out.write_all(b"half")?;
+        assert_eq!(num_files(), 1);
+        assert_eq!(io::abandon_writes(num_files), 0);
+        Ok::<(), std::io::Error>(())
+    });
+    assert!(written.is_err(), "there is nothing to rename");
+    assert_eq!((num_files(), io::abandon_writes(|| 7)), (0, 7));
+    io::write_atomic(&path, |out| out.write_all(b"whole")).unwrap();
+    assert_eq!(io::abandon_writes(num_files), 1, "finished files are no longer at work");
+}
+
+#[cfg(unix)]
+#[test]
+fn links_to_nothing_are_followed() {
+    use std::os::unix::fs::symlink;
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    fs::create_dir(at("sub")).unwrap();
+    symlink("sub/second", at("first")).unwrap();
+    symlink("../real", at("sub/second")).unwrap();
+    io::write_atomic(at("first"), |out| out.write_all(b"new")).unwrap();
+    assert!(fs::symlink_metadata(at("first")).unwrap().is_symlink());
+    assert!(fs::symlink_metadata(at("sub/second")).unwrap().is_symlink());
+    assert_eq!(fs::read(at("real")).unwrap(), b"new");
+    symlink("nowhere/at/all", at("lost")).unwrap();
+    assert!(io::write_atomic(at("lost"), |out| out.write_all(b"x")).is_err());
+    symlink("circle", at("circle")).unwrap();
+    assert!(io::write_atomic(at("circle"), |out| out.write_all(b"x")).is_err());
+    assert_eq!(fs::read_dir(&directory).unwrap().count(), 5, "links, a folder and the file");
+}
+
 #[cfg(unix)]
 #[test]
 fn replaced_files_keep_permissions_and_links() {

@@ -34,7 +34,7 @@ mod unpack;
 
 #[cfg(feature = "gltf")]
 pub use crate::mesh::Instance;
-pub use atomic::write_atomic;
+pub use atomic::{abandon_writes, write_atomic};
 pub use error::{Place, ReadError, WriteError};
 #[cfg(feature = "las")]
 pub use las::TerrainOptions;
