@@ -1,7 +1,8 @@
 //! The decoder behind a handful of functions that take and return numbers.
 //!
 //! `web/src/decoder.ts` is the only caller. Decoders are named by numbers, not by pointers, so a wrong
-//! handle is a trap and never a stray access; the one thing left to the caller is to write at most as
+//! handle is a trap and never a stray access. A decoder is out of the list while it works: a trap, after which nothing
+//! of its call runs, takes that decoder and leaves the others as they were. The one thing left to the caller is to write at most as
 //! many bytes as it asked [`input`] for. There is no `unsafe` block; the attribute that exports a name
 //! needs the word because two crates could export the same one, and nothing else is linked here.
 
@@ -15,16 +16,42 @@ mod slot;
 use slot::Slot;
 use std::cell::RefCell;
 
+/// What a handle stands for.
+enum Place {
+    Free,
+    /// At work, or lost in a trap.
+    Away,
+    // In a box, since the page has pointers into it.
+    Here(Box<Slot>),
+}
+
 thread_local! {
     // A WebAssembly instance has one thread.
-    static SLOTS: RefCell<Vec<Option<Slot>>> = const { RefCell::new(Vec::new()) };
+    static PLACES: RefCell<Vec<Place>> = const { RefCell::new(Vec::new()) };
 }
 
 fn with<R>(handle: u32, then: impl FnOnce(&mut Slot) -> R) -> R {
-    SLOTS.with_borrow_mut(|slots| match slots.get_mut(handle as usize) {
-        Some(Some(slot)) => then(slot),
-        _ => panic!("no such decoder"),
+    let mut slot = take(handle).expect("no such decoder");
+    let found = then(&mut slot);
+    put(handle, Place::Here(slot));
+    found
+}
+
+/// The list is borrowed no longer than this takes: what traps later finds it free.
+fn take(handle: u32) -> Option<Box<Slot>> {
+    PLACES.with_borrow_mut(|places| {
+        let place = places.get_mut(handle as usize).filter(|place| matches!(place, Place::Here(_)))?;
+        match std::mem::replace(place, Place::Away) {
+            Place::Here(slot) => Some(slot),
+            _ => None,
+        }
     })
+}
+
+fn put(handle: u32, new: Place) {
+    let old = PLACES
+        .with_borrow_mut(|places| places.get_mut(handle as usize).map(|place| std::mem::replace(place, new)));
+    drop(old);
 }
 
 /// Makes a decoder. `level`: the last level wanted, `u32::MAX` for all. Positions are given relative to
@@ -38,12 +65,14 @@ pub extern "C" fn create(level: u32, max_memory: f64, max_vertices: u32, relativ
         options = options.level(level);
     }
     let slot = Slot::new(options, relative != 0, shade != 0);
-    SLOTS.with_borrow_mut(|slots| {
-        let free = slots.iter().position(Option::is_none).unwrap_or(slots.len());
-        if free == slots.len() {
-            slots.push(None);
+    let slot = Place::Here(Box::new(slot));
+    PLACES.with_borrow_mut(|places| {
+        let free = places.iter().position(|place| matches!(place, Place::Free)).unwrap_or(places.len());
+        if free == places.len() {
+            places.push(slot);
+        } else {
+            places[free] = slot;
         }
-        slots[free] = Some(slot);
         free as u32
     })
 }
@@ -51,7 +80,7 @@ pub extern "C" fn create(level: u32, max_memory: f64, max_vertices: u32, relativ
 /// Forgets a decoder and frees its memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn destroy(handle: u32) {
-    SLOTS.with_borrow_mut(|slots| slots[handle as usize] = None);
+    put(handle, Place::Free);
 }
 
 /// Where the next `length` bytes of the stream are to be written.
