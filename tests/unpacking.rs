@@ -4,7 +4,11 @@
 
 use lwc::io::{self, Format, ReadError, ReadOptions};
 use peak_alloc::PeakAlloc;
-use std::{fs, path::PathBuf, sync::Mutex};
+use std::{
+    fs,
+    path::PathBuf,
+    sync::{Mutex, MutexGuard},
+};
 use tempfile::TempDir;
 
 #[global_allocator]
@@ -15,9 +19,12 @@ static TURN: Mutex<()> = Mutex::new(());
 
 const MIB: usize = 1 << 20;
 
+fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
 /// Result of `f`, and the most bytes it held at once beyond those that were there before.
 fn peak<T>(f: impl FnOnce() -> T) -> (T, usize) {
-    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     let before = HEAP.current_usage();
     HEAP.reset_peak_usage();
     let result = f();
@@ -83,11 +90,13 @@ fn is_refused<T>(result: Result<T, ReadError>) -> bool {
 
 #[test]
 fn the_usual_limits_are_those_that_are_documented() {
+    let _turn = turn();
     assert_eq!(ReadOptions::default(), limits(256 * MIB, 1000));
 }
 
 #[test]
 fn what_unpacks_out_of_proportion_is_refused() {
+    let _turn = turn();
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in idle_files(2 * MIB) {
         let path = write(&folder, name, &bytes);
@@ -105,6 +114,7 @@ fn what_unpacks_out_of_proportion_is_refused() {
 /// Formats that are in memory as a whole are unpacked to the limit and no further.
 #[test]
 fn what_is_read_whole_is_refused_alike() {
+    let _turn = turn();
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.glb", "a.gltf", "a.las", "a.laz"] {
         let path = write(&folder, name, &vec![b' '; 32 * MIB]);
@@ -119,6 +129,7 @@ fn what_is_read_whole_is_refused_alike() {
 /// A parser holds what it keeps and a piece of the file, never all of it.
 #[test]
 fn compressed_files_are_unpacked_in_pieces() {
+    let _turn = turn();
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in idle_files(32 * MIB) {
         let path = write(&folder, name, &bytes);
@@ -132,6 +143,7 @@ fn compressed_files_are_unpacked_in_pieces() {
 /// Damage behind what a parser wants to know.
 #[test]
 fn the_end_of_a_compressed_file_is_checked() {
+    let _turn = turn();
     let folder = tempfile::tempdir().unwrap();
     let (_, bytes) = idle_files(MIB).into_iter().find(|(name, _)| *name == "tail.ply").unwrap();
     let path = write(&folder, "tail.ply", &bytes);
@@ -142,6 +154,7 @@ fn the_end_of_a_compressed_file_is_checked() {
 
 #[test]
 fn binary_stl_is_read_in_pieces() {
+    let _turn = turn();
     let folder = tempfile::tempdir().unwrap();
     // Begins as a text does, which only the size tells; compressed files have none.
     for head in [&b"binary"[..], b"solid", b"  solid of nothing"] {

@@ -103,6 +103,19 @@ impl<'a> Source<'a> {
         num - num_left
     }
 
+    /// Passes over lines without anything: of these a compressed file may have more than of all else.
+    pub fn skip_empty_lines(&mut self) {
+        while self.fill(1) {
+            let rest = &self.buffer[self.start..];
+            let num = rest.iter().position(|&byte| byte != b'\n').unwrap_or(rest.len());
+            self.start += num;
+            self.num_lines += num;
+            if self.start < self.buffer.len() {
+                break;
+            }
+        }
+    }
+
     /// Takes the next line.
     pub fn line(&mut self) -> Option<Line<'_>> {
         let is_end = |&byte: &u8| byte == b'\n' || byte == b'\r';
@@ -166,11 +179,12 @@ impl<'a> Source<'a> {
         if self.is_at_end {
             return false;
         }
+        let held = self.buffer.len();
         let piece = self.reader.by_ref().take(PIECE_BYTES as u64).read_to_end(&mut self.buffer);
         self.is_at_end = !matches!(piece, Ok(1..));
         // What unpacks a file has a reason of its own.
         self.failure = piece.err().map(|error| error.downcast().unwrap_or_else(ReadError::Io));
-        !self.is_at_end
+        self.buffer.len() > held
     }
 }
 
@@ -227,6 +241,21 @@ mod tests {
             let expected = [long, b"y".to_vec(), Vec::new(), b"z".to_vec()];
             assert_eq!(lines(&text).into_iter().map(|(_, text, _)| text).collect::<Vec<_>>(), expected);
         }
+    }
+
+    #[test]
+    fn empty_lines_are_counted_where_they_are_skipped() {
+        let text = [&b"a\r\n"[..], &vec![b'\n'; 2 * PIECE_BYTES], b"\r\nb"].concat();
+        let mut source = Source::of_bytes(&text);
+        assert_eq!(source.line().map(|line| line.text), Some(&b"a"[..]));
+        source.skip_empty_lines();
+        assert_eq!(source.num_lines(), 1 + 2 * PIECE_BYTES);
+        assert_eq!(source.line().map(|line| line.text), Some(&b""[..]));
+        source.skip_empty_lines();
+        let line = Line { number: 3 + 2 * PIECE_BYTES, text: b"b", is_cut: true };
+        assert_eq!(source.line(), Some(line));
+        source.skip_empty_lines();
+        assert_eq!(source.line(), None);
     }
 
     #[test]

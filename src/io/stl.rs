@@ -149,7 +149,9 @@ fn read_text(source: &mut Source) -> Result<MeshFile, ReadError> {
     let mut welder = Welder::default();
     let mut corners = Vec::new();
     let mut is_in_loop = false;
-    while let Some(line) = source.line() {
+    loop {
+        source.skip_empty_lines();
+        let Some(line) = source.line() else { break };
         let place = Place::Line(line.number);
         let bad = |cause: &str| ReadError::syntax(place, format!("{cause}: {}", quoted(line.text)));
         if line.text.contains(&0) {

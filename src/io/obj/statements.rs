@@ -42,6 +42,7 @@ impl<'s, 'a> Statements<'s, 'a> {
 
     pub fn next(&mut self) -> Option<Statement<'_>> {
         self.text.clear();
+        self.source.skip_empty_lines();
         let first = self.source.line()?;
         let line = first.number;
         let mut is_continued = append(&mut self.text, first.text);

@@ -54,6 +54,7 @@ impl<'s, 'a> Body<'s, 'a> {
         }
         self.line.clear();
         while self.line.is_empty() {
+            self.source.skip_empty_lines();
             let line = self.source.line().ok_or(Fault::EndOfFile)?;
             self.line.extend_from_slice(line.text.trim_ascii());
         }
