@@ -230,7 +230,7 @@ test('a trap takes its own decoder and no other', async () => {
     const checksum = other.checksum();
 
     const next = new Decoder(module);
-    assert.throws(() => lost.push(bytes), isTrap, 'its number is not given away before it is freed');
+    assert.throws(() => lost.push(bytes), isTrap, 'its number is not given away');
     lost.free();
     for (const decoder of [next, new Decoder(module)]) {
       decoder.push(bytes);
@@ -245,6 +245,6 @@ test('the module is small', (t) => {
   for (const [which, path] of Object.entries(modules)) {
     const size = gzipSync(readFileSync(new URL(path, import.meta.url)), { level: 9 }).length;
     t.diagnostic(`${which}: ${size} bytes gzip`);
-    assert.ok(size < (which.includes('attributes') ? 200_000 : 100_000), `${which}: ${size} bytes gzip`);
+    assert.ok(size < (which.includes('attributes') ? 200_000 : 102_400), `${which}: ${size} bytes gzip`);
   }
 });
