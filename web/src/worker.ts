@@ -102,10 +102,11 @@ function fail(caught: unknown): void {
 /** The mesh goes out before decoding goes on. */
 function showSlice(decoder: Decoder): boolean {
   if (!decoder.prepareFor(slice)) return true;
-  isTaken = false;
-  isDirty = false;
   if (hasAttributes) sendDrawing(decoder);
   else send(decoder);
+  // What breaks off before this still owes the page an answer.
+  isTaken = false;
+  isDirty = false;
   return true;
 }
 

@@ -57,7 +57,7 @@ test('the module made up for these tests gives an update and an end', async () =
 });
 
 for (const name of ['create', 'input', 'feed', 'step', 'prepare', 'positions', 'expected_error']) {
-  test(`a trap in ${name} reaches the page as an error`, async () => {
+  test(`a trap in ${name} reaches the page as an error`, { timeout: 20_000 }, async () => {
     const worker = open(trapping(name));
     await worker.push(new Uint8Array(8));
     await assert.rejects(worker.next(), /the decoder broke off: unreachable/);
