@@ -214,8 +214,9 @@ impl From<lwc::Update> for Update {
 }
 
 /// Decodes a stream as it arrives.
+// In a box of its own: Python's memory is aligned to 16 bytes, and a decoder wants 128.
 #[pyclass]
-struct Decoder(lwc::Decoder);
+struct Decoder(Box<lwc::Decoder>);
 
 #[pymethods]
 impl Decoder {
@@ -228,13 +229,8 @@ impl Decoder {
         max_vertices: Option<u32>,
         max_levels: Option<u32>,
     ) -> Self {
-        Self(lwc::Decoder::with_options(options::decode(
-            level,
-            compensate,
-            max_memory,
-            max_vertices,
-            max_levels,
-        )))
+        let options = options::decode(level, compensate, max_memory, max_vertices, max_levels);
+        Self(Box::new(lwc::Decoder::with_options(options)))
     }
 
     /// Takes the next bytes, however they are cut, and applies every pass that is complete.
