@@ -234,13 +234,13 @@ fn streams_and_meshes_keep_to_their_endings() {
 
 /// A text of 300 MiB in which there is next to nothing, in less than 100 kB.
 fn inflated_obj() -> Vec<u8> {
-    let mut packer = zstd::Encoder::new(Vec::new(), 1).unwrap();
+    let mut packer = zstd::Encoder::new(Vec::new(), 1).expect("writing to memory");
     let comment = [vec![b'#'; (1 << 20) - 1], vec![b'\n']].concat();
     for _ in 0..300 {
-        packer.write_all(&comment).unwrap();
+        packer.write_all(&comment).expect("writing to memory");
     }
-    packer.write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    packer.finish().unwrap()
+    packer.write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("writing to memory");
+    packer.finish().expect("writing to memory")
 }
 
 #[test]
@@ -266,12 +266,12 @@ fn what_unpacks_out_of_proportion_needs_an_option() {
 fn disturbed(workshop: &Workshop, line: &str, signal: &str, wait: impl Fn()) -> Output {
     let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("lwc"));
     command.current_dir(workshop.0.path()).args(line.split(' ')).stdin(Stdio::piped());
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("a run");
     let stdin = child.stdin.take();
     wait();
     let id = child.id().to_string();
     std::process::Command::new("kill").args([signal, &id]).output().expect("the program `kill`");
-    let output = child.wait_with_output().unwrap();
+    let output = child.wait_with_output().expect("a run");
     drop(stdin);
     output
 }

@@ -55,11 +55,9 @@ fn idle_files(num_bytes: usize) -> Vec<(&'static str, Vec<u8>)> {
 
 /// A binary PLY whose first element is not one of ours.
 fn skipped_ply(num_bytes: usize) -> Vec<u8> {
-    let header = format!(
-        "ply\nformat binary_little_endian 1.0\nelement junk 1\nproperty list uint uchar waste\nelement vertex 1\n\
-         property float x\nproperty float y\nproperty float z\nend_header\n"
-    );
-    let mut bytes = header.into_bytes();
+    let header = "ply\nformat binary_little_endian 1.0\nelement junk 1\nproperty list uint uchar waste\nelement vertex 1\n\
+         property float x\nproperty float y\nproperty float z\nend_header\n";
+    let mut bytes = header.as_bytes().to_vec();
     bytes.extend((num_bytes as u32).to_le_bytes());
     bytes.resize(bytes.len() + num_bytes + 12, 0);
     bytes
