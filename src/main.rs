@@ -10,7 +10,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let args = Args::parse();
     let ui = Ui::new(&args.global);
-    match dispatch(&args, &ui) {
+    match cli::signals::watch().and_then(|()| dispatch(&args, &ui)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => cli::exit::report(&error, &ui),
     }

@@ -254,8 +254,8 @@ fn obj_corners_groups_and_colours_are_kept() {
 fn obj_errors_of_corners_name_line_and_cause() {
     let start = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n";
     for (statement, line, cause) in [
-        ("f 1/2 2 3", 7, "no such texture coordinate, of 1: `1/2`"),
-        ("f 1 2//9 3", 7, "no such normal, of 1: `2//9`"),
+        ("f 1/2 2 3", 7, "no such texture coordinate, of 1: `2`"),
+        ("f 1 2//9 3", 7, "no such normal, of 1: `9`"),
         ("f 1/0 2 3", 7, "no such texture coordinate or normal: `f 1/0 2 3`"),
         ("f 1/-2 2 3", 7, "no such texture coordinate or normal"),
         ("g\nf 1/x 2 3", 8, "not a whole number"),

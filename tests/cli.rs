@@ -10,6 +10,7 @@ use lwc::descriptors::{Descriptor, Window, evaluate, mean_edge_length};
 use lwc::{TriMesh, io};
 use serde_json::Value;
 use std::fs;
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Output, Stdio};
 use tempfile::TempDir;
@@ -207,6 +208,110 @@ fn inputs_are_never_replaced() {
     }
     assert_eq!(fs::read(workshop.path("ball.ply")).unwrap(), mesh);
     assert_eq!(fs::read(workshop.path("stream.ply")).unwrap(), stream);
+}
+
+#[test]
+fn streams_and_meshes_keep_to_their_endings() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    workshop.put("other.obj", &sphere(1));
+    let other = fs::read(workshop.path("other.obj")).unwrap();
+    for output in ["other.obj", "new.ply", "new.STL", "new.glb.zst", "new.laz"] {
+        let stderr = workshop.fails(&format!("encode ball.ply -o {output}"), 2);
+        let expected = "the ending is that of a mesh, but the output is a stream (.lwc)";
+        assert_eq!(error_line(&stderr), format!("lwc: {output}: {expected}"));
+    }
+    assert_eq!(fs::read(workshop.path("other.obj")).unwrap(), other);
+    let stream = fs::read(workshop.path("ball.lwc")).unwrap();
+    fs::write(workshop.path("old.lwc"), "a stream").unwrap();
+    for line in ["decode ball.lwc -o old.lwc", "filter ball.ply --gain 1=1 -o old.lwc"] {
+        assert!(error_line(&workshop.fails(line, 2)).contains("unknown file ending"), "{line}");
+    }
+    assert_eq!(fs::read(workshop.path("old.lwc")).unwrap(), b"a stream");
+    workshop.ok("encode ball.ply -o ball.bin");
+    assert_eq!(fs::read(workshop.path("ball.bin")).unwrap(), stream);
+}
+
+/// A text of 300 MiB in which there is next to nothing, in less than 100 kB.
+fn inflated_obj() -> Vec<u8> {
+    let mut packer = zstd::Encoder::new(Vec::new(), 1).expect("writing to memory");
+    let comment = [vec![b'#'; (1 << 20) - 1], vec![b'\n']].concat();
+    for _ in 0..300 {
+        packer.write_all(&comment).expect("writing to memory");
+    }
+    packer.write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("writing to memory");
+    packer.finish().expect("writing to memory")
+}
+
+#[test]
+fn what_unpacks_out_of_proportion_needs_an_option() {
+    let workshop = Workshop::new();
+    workshop.ball_stream();
+    fs::write(workshop.path("big.obj.zst"), inflated_obj()).unwrap();
+    for line in ["encode big.obj.zst", "describe big.obj.zst", "compare ball.ply big.obj.zst"] {
+        let stderr = workshop.fails(line, 5);
+        let expected = "lwc: big.obj.zst: refused without --any-ratio: too large: ";
+        assert!(error_line(&stderr).starts_with(expected), "{stderr}");
+    }
+    workshop.ok("describe big.obj.zst --any-ratio");
+    for command in ["encode", "describe", "compare", "experiment", "render", "filter", "edit", "view"] {
+        assert!(workshop.ok(&format!("{command} --help")).0.contains("--any-ratio"), "{command}");
+    }
+}
+
+// --- signals ---
+
+/// Runs a line with its standard input open, and does something to it.
+#[cfg(unix)]
+fn disturbed(workshop: &Workshop, line: &str, signal: &str, wait: impl Fn()) -> Output {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("lwc"));
+    command.current_dir(workshop.0.path()).args(line.split(' ')).stdin(Stdio::piped());
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("a run");
+    let stdin = child.stdin.take();
+    wait();
+    let id = child.id().to_string();
+    std::process::Command::new("kill").args([signal, &id]).output().expect("the program `kill`");
+    let output = child.wait_with_output().expect("a run");
+    drop(stdin);
+    output
+}
+
+#[cfg(unix)]
+#[test]
+fn signals_end_the_program_with_their_number() {
+    let workshop = Workshop::new();
+    let before = workshop.files();
+    for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
+        // The thread that waits for signals is there before the first output.
+        let wait = || std::thread::sleep(std::time::Duration::from_millis(300));
+        let output = disturbed(&workshop, "decode - -o never.obj", signal, wait);
+        assert_eq!((output.status.code(), text(output.stderr)), (Some(code), String::new()), "{signal}");
+    }
+    assert_eq!(workshop.files(), before);
+}
+
+/// The moment between the first and the last byte of a file is short: it is tried for until it is met.
+#[cfg(unix)]
+#[test]
+fn a_signal_while_writing_leaves_no_file() {
+    let workshop = Workshop::new();
+    workshop.put("large.ply", &sphere(6));
+    workshop.ok("encode large.ply --quiet --effort 0");
+    let before = workshop.files();
+    let is_writing = || workshop.files().iter().any(|name| name.starts_with(".lwc-"));
+    let was_met = (0..50).any(|_| {
+        let begin = std::time::Instant::now();
+        let wait = || while !is_writing() && begin.elapsed().as_secs() < 20 {};
+        let output = disturbed(&workshop, "decode large.lwc -o large.obj.zst --quiet", "-INT", wait);
+        let is_whole = output.status.code() == Some(0);
+        assert!(is_whole || output.status.code() == Some(130), "{output:?}");
+        if is_whole {
+            fs::remove_file(workshop.path("large.obj.zst")).unwrap();
+        }
+        assert_eq!(workshop.files(), before);
+        !is_whole
+    });
+    assert!(was_met, "no signal came in time");
 }
 
 // --- encode ---

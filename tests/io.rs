@@ -182,6 +182,26 @@ fn failed_writes_leave_what_was_there() {
 
 #[cfg(unix)]
 #[test]
+fn links_to_nothing_are_followed() {
+    use std::os::unix::fs::symlink;
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    fs::create_dir(at("sub")).unwrap();
+    symlink("sub/second", at("first")).unwrap();
+    symlink("../real", at("sub/second")).unwrap();
+    io::write_atomic(at("first"), |out| out.write_all(b"new")).unwrap();
+    assert!(fs::symlink_metadata(at("first")).unwrap().is_symlink());
+    assert!(fs::symlink_metadata(at("sub/second")).unwrap().is_symlink());
+    assert_eq!(fs::read(at("real")).unwrap(), b"new");
+    symlink("nowhere/at/all", at("lost")).unwrap();
+    assert!(io::write_atomic(at("lost"), |out| out.write_all(b"x")).is_err());
+    symlink("circle", at("circle")).unwrap();
+    assert!(io::write_atomic(at("circle"), |out| out.write_all(b"x")).is_err());
+    assert_eq!(fs::read_dir(&directory).unwrap().count(), 5, "links, a folder and the file");
+}
+
+#[cfg(unix)]
+#[test]
 fn replaced_files_keep_permissions_and_links() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let directory = tempfile::tempdir().unwrap();

@@ -208,6 +208,46 @@ fn compressed_points_are_the_same() {
     }
 }
 
+/// The same file as LASzip before 2011 wrote it: one chunk without a table, and any number for its size.
+fn point_wise(format: u8, points: &[Point], chunk_size: u32) -> Vec<u8> {
+    let mut bytes = laz(format, points);
+    let start = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+    let table = u64::from_le_bytes(bytes[start..start + 8].try_into().unwrap()) as usize;
+    bytes.truncate(table);
+    bytes.drain(start..start + 8);
+    let header_bytes = u16::from_le_bytes(bytes[94..96].try_into().unwrap()) as usize;
+    let record = header_bytes + 54;
+    bytes[record..record + 2].copy_from_slice(&1u16.to_le_bytes());
+    bytes[record + 12..record + 16].copy_from_slice(&chunk_size.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn points_without_chunks_are_read() {
+    let grid: Vec<Point> = (0..300).map(|k| ([k % 17 * 90, k / 17 * 110, k % 40], 1, 1, 2)).collect();
+    for format in 0..=3 {
+        for chunk_size in [0, 1, 100, u32::MAX] {
+            let file = io::read_bytes(&point_wise(format, &grid, chunk_size), Format::Laz);
+            let file = file.unwrap_or_else(|e| panic!("format {format}, chunks of {chunk_size}: {e}"));
+            assert_eq!(file, read(&las(format, &grid)).unwrap(), "format {format}");
+        }
+    }
+}
+
+/// Chunks of several sizes, and no chunk in the table: `laz` looks for the first and panics.
+#[test]
+fn a_panic_of_the_decompressor_is_an_error() {
+    let mut bytes = laz(3, &SQUARE);
+    let start = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+    let table = u64::from_le_bytes(bytes[start..start + 8].try_into().unwrap()) as usize;
+    bytes[table + 4..table + 8].copy_from_slice(&0u32.to_le_bytes());
+    let header_bytes = u16::from_le_bytes(bytes[94..96].try_into().unwrap()) as usize;
+    bytes[header_bytes + 54 + 12..][..4].copy_from_slice(&u32::MAX.to_le_bytes());
+    let error = read(&bytes).expect_err("accepted");
+    assert!(matches!(error, ReadError::Syntax { .. }), "{error}");
+    assert!(error.to_string().contains("damaged LAZ data: the decoder gave up"), "{error}");
+}
+
 #[test]
 fn damaged_compression_is_refused_without_harm() {
     for format in [3, 7] {

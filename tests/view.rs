@@ -27,7 +27,12 @@ struct Answer {
 
 impl Server {
     fn start(model: &str) -> Self {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_lwc"))
+        Self::start_by(Command::new(env!("CARGO_BIN_EXE_lwc")), model)
+    }
+
+    /// `command` runs the program with further arguments.
+    fn start_by(mut command: Command, model: &str) -> Self {
+        let mut program = command
             .args(["view", model, "--no-open", "--quiet"])
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .stdout(Stdio::piped())
@@ -128,6 +133,22 @@ fn one_that_does_not_read_does_not_keep_others_waiting() {
     let idle: Vec<TcpStream> = (0..20).map(|_| TcpStream::connect(&server.address).unwrap()).collect();
     assert_eq!(server.get("/model.lwc", "").body, torus());
     drop(idle);
+}
+
+/// More connections than it may have open files: `accept` fails until some have gone.
+#[cfg(unix)]
+#[test]
+fn a_shortage_of_files_passes() {
+    let mut command = Command::new("sh");
+    command.args(["-c", r#"ulimit -n 16; exec "$0" "$@""#, env!("CARGO_BIN_EXE_lwc")]);
+    let mut server = Server::start_by(command, TORUS);
+    for _ in 0..2 {
+        let idle: Vec<TcpStream> = (0..40).map(|_| TcpStream::connect(&server.address).unwrap()).collect();
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        assert!(server.program.try_wait().unwrap().is_none(), "the server has ended");
+        drop(idle);
+        assert_eq!(server.get("/model.lwc", "").body, torus());
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Parser, Subcommand, value_parser};
 use lwc::descriptors::{Descriptor, FeatureChoice, Window};
-use lwc::io::TerrainOptions;
+use lwc::io::{ReadOptions, TerrainOptions};
 use lwc::{EncodeOptions, Limits, Optimize, Partition, Profile};
 use std::path::PathBuf;
 
@@ -57,7 +57,8 @@ pub struct Encode {
     /// Mesh to encode.
     #[arg(value_name = "MODEL")]
     pub input: PathBuf,
-    /// Stream to write, `-` for standard output. Default: MODEL with the ending .lwc, beside MODEL.
+    /// Stream to write, `-` for standard output. Default: MODEL with the ending .lwc, beside MODEL. The endings of meshes are
+    /// refused.
     ///
     /// A file that exists is replaced once the new one is complete.
     #[arg(short, long, value_name = "FILE")]
@@ -158,9 +159,26 @@ pub struct Encode {
     /// Print one JSON object in place of the summary (to standard error with `-o -`).
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub reading: Reading,
     // Last: its heading would cover what follows.
     #[command(flatten)]
     pub terrain: Terrain,
+}
+
+/// How mesh files are read.
+#[derive(Debug, clap::Args)]
+pub struct Reading {
+    /// Read .zst files even if they unpack to more than 256 MiB and to more than 1000 times their size.
+    #[arg(long)]
+    pub any_ratio: bool,
+}
+
+impl Reading {
+    /// The options of the library.
+    pub fn options(&self) -> ReadOptions {
+        if self.any_ratio { ReadOptions::default().any_ratio() } else { ReadOptions::default() }
+    }
 }
 
 /// Which points of a point cloud become vertices.
@@ -320,6 +338,8 @@ pub struct Describe {
     #[command(flatten)]
     pub heat: super::render::args::HeatArgs,
     #[command(flatten)]
+    pub reading: Reading,
+    #[command(flatten)]
     pub picture: super::render::args::Picture,
 }
 
@@ -343,6 +363,8 @@ pub struct Compare {
     #[arg(long)]
     pub json: bool,
     #[command(flatten)]
+    pub reading: Reading,
+    #[command(flatten)]
     pub limits: LimitArgs,
 }
 
@@ -361,6 +383,8 @@ pub struct View {
     /// Do not start a browser.
     #[arg(long)]
     pub no_open: bool,
+    #[command(flatten)]
+    pub reading: Reading,
     #[command(flatten)]
     pub scale: Scale,
 }

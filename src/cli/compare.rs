@@ -11,8 +11,8 @@ use std::io::{self, Write};
 
 /// Reads both, measures, reports.
 pub fn run(args: &Compare, ui: &Ui) -> anyhow::Result<()> {
-    let a = read_mesh_or_stream(&args.a, args.limits.limits(), ui)?;
-    let b = read_mesh_or_stream(&args.b, args.limits.limits(), ui)?;
+    let a = read_mesh_or_stream(&args.a, args.limits.limits(), &args.reading, ui)?;
+    let b = read_mesh_or_stream(&args.b, args.limits.limits(), &args.reading, ui)?;
     let mut options = CompareOptions::new();
     options.samples = args.samples.map(|samples| samples as usize);
     let found = {

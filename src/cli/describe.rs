@@ -20,7 +20,7 @@ pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
     let is_text = matches!(Kind::of(&destination), Some(Kind::Table));
     destination.check(Some(&args.input), is_text)?;
 
-    let MeshFile { mesh, attributes, .. } = read_mesh(&args.input, ui)?;
+    let MeshFile { mesh, attributes, .. } = read_mesh(&args.input, &args.reading, ui)?;
     let choices = &args.scale.descriptor_attributes;
     let mean_edge = mean_edge_length(&mesh);
     let values = {

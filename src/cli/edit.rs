@@ -1,6 +1,6 @@
 //! `lwc edit`: the details of a stream on a coarse mesh that was changed elsewhere.
 
-use super::args::LimitArgs;
+use super::args::{LimitArgs, Reading};
 use super::exit::Failure;
 use super::input::{StreamSource, read_mesh};
 use super::output::Destination;
@@ -33,6 +33,8 @@ pub struct Edit {
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     #[command(flatten)]
+    pub reading: Reading,
+    #[command(flatten)]
     pub limits: LimitArgs,
 }
 
@@ -47,7 +49,7 @@ pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
     destination.check(Some(&args.changed), false)?;
     destination.check(Some(&args.stream), false)?;
 
-    let changed = read_mesh(&args.changed, ui)?.mesh;
+    let changed = read_mesh(&args.changed, &args.reading, ui)?.mesh;
     let source = StreamSource::new(Some(&args.stream))?;
     let mut bytes = Vec::new();
     source.open()?.read_to_end(&mut bytes).map_err(Failure::Input).with_context(|| source.name())?;

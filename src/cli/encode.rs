@@ -1,13 +1,14 @@
 //! `lwc encode`: a mesh file becomes a stream.
 
 use super::args::Encode;
+use super::exit::Failure;
 use super::input::{read_for_stream, read_terrain};
 use super::output::{Destination, print_json, with_ending, without_mesh_ending};
 use super::quantity::counted;
 use super::ui::Ui;
 use super::{passes, verify};
 use anyhow::Context;
-use lwc::io::MeshFile;
+use lwc::io::{Format, MeshFile};
 use lwc::{EncodeOptions, Encoded, RepairReport};
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -49,10 +50,11 @@ impl Encode {
 pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let destination = args.destination();
     destination.check(Some(&args.input), false)?;
+    check_ending(&destination).with_context(|| destination.name())?;
     let start = Instant::now();
     let mut file = match args.terrain.options() {
-        Some(options) => read_terrain(&args.input, &options, ui)?,
-        None => read_for_stream(&args.input, args.merge, ui)?,
+        Some(options) => read_terrain(&args.input, &options, &args.reading, ui)?,
+        None => read_for_stream(&args.input, args.merge, &args.reading, ui)?,
     };
     let left_out = if args.no_attributes { drop_attributes(&mut file) } else { Vec::new() };
     let read_seconds = start.elapsed().as_secs_f64();
@@ -73,6 +75,16 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let (file, encoded) = (&file, &encoded);
     let report = Report { args, file, left_out, encoded, destination, read_seconds, encode_seconds };
     report.print(ui)
+}
+
+/// A stream under the ending of a mesh would be taken for one, and often replaces it.
+fn check_ending(destination: &Destination) -> Result<(), Failure> {
+    match destination {
+        Destination::File(path) if Format::from_path(path).is_some() => {
+            Err(Failure::Usage("the ending is that of a mesh, but the output is a stream (.lwc)".into()))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Grids that are tried if all floats are kept and nobody says how fine it should be: coordinates may lie on

@@ -18,7 +18,8 @@ Exit codes:
   3  an input that cannot be read, or is not a mesh or stream that can be used
   4  a damaged stream, or one that ends before its base mesh
   5  a limit is exceeded
-  6  the verification of an encoded stream failed";
+  6  the verification of an encoded stream failed
+  130, 143  stopped by Ctrl-C (SIGINT), by SIGTERM; no unfinished file is left";
 
 const OTHER: u8 = 1;
 const USAGE: u8 = 2;
@@ -62,7 +63,7 @@ fn code(error: &anyhow::Error) -> u8 {
             Failure::Verification(_) => VERIFICATION,
         }))
         .or(cause.downcast_ref().map(|error| match error {
-            ReadError::TooLarge { .. } => LIMIT,
+            ReadError::TooLarge { .. } | ReadError::Ratio { .. } => LIMIT,
             _ => INPUT,
         }))
         .or(cause.downcast_ref().map(|error| match error {
@@ -136,6 +137,7 @@ mod tests {
             (anyhow!(DecodeError::NotAStream), INPUT),
             (anyhow!(DecodeError::NoMesh), DAMAGED),
             (anyhow!(limit), LIMIT),
+            (anyhow!(ReadError::Ratio { packed: 1, most: 2 }), LIMIT),
             (anyhow!(Failure::Verification("v".into())), VERIFICATION),
         ] {
             assert_eq!(code(&error.context("file")), expected);

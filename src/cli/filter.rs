@@ -1,6 +1,6 @@
 //! `lwc filter`: features of chosen scales weakened, strengthened or taken for noise.
 
-use super::args::Scale;
+use super::args::{Reading, Scale};
 use super::exit::Failure;
 use super::gain::Gain;
 use super::input::read_mesh;
@@ -58,6 +58,8 @@ pub struct Filter {
     #[arg(long, value_name = "FACTOR", default_value_t = Options::default().growth)]
     #[arg(value_parser = quantity::number(1.0, 16.0))]
     pub growth: f64,
+    #[command(flatten)]
+    pub reading: Reading,
 }
 
 impl Filter {
@@ -83,7 +85,7 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
         return Err(Failure::Usage("there is something to do, but no -o FILE for the result".into()).into());
     }
     let name = args.input.display().to_string();
-    let mesh = read_mesh(&args.input, ui)?.mesh;
+    let mesh = read_mesh(&args.input, &args.reading, ui)?.mesh;
     let spinner = ui.spinner("filtering");
     let mut report = Vec::new();
     let filtered = if args.denoise {

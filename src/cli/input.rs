@@ -1,5 +1,6 @@
 //! Meshes and streams from files and standard input.
 
+use super::args::Reading;
 use super::exit::Failure;
 use super::quantity::counted;
 use super::ui::{Bar, Ui};
@@ -12,17 +13,22 @@ use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
 /// Reads a mesh file and warns about what it leaves out.
-pub fn read_mesh(path: &Path, ui: &Ui) -> anyhow::Result<MeshFile> {
-    read_with(path, || lwc::io::read(path), ui)
+pub fn read_mesh(path: &Path, reading: &Reading, ui: &Ui) -> anyhow::Result<MeshFile> {
+    read_with(path, || reading.options().read(path), ui)
 }
 
 /// As [`read_mesh`], with options that are there for point clouds only.
-pub fn read_terrain(path: &Path, options: &TerrainOptions, ui: &Ui) -> anyhow::Result<MeshFile> {
+pub fn read_terrain(
+    path: &Path,
+    options: &TerrainOptions,
+    reading: &Reading,
+    ui: &Ui,
+) -> anyhow::Result<MeshFile> {
     if !matches!(Format::from_path(path), Some(Format::Las | Format::Laz)) {
         let what = "--last-returns, --thin and --max-points are for point clouds, .las and .laz".to_owned();
         return Err(Failure::Usage(what)).with_context(|| path.display().to_string());
     }
-    read_with(path, || lwc::io::read_terrain(path, options), ui)
+    read_with(path, || reading.options().read_terrain(path, options), ui)
 }
 
 fn read_with(
@@ -33,10 +39,17 @@ fn read_with(
     let name = path.display().to_string();
     let file = {
         let _spinner = ui.spinner("reading");
-        read().with_context(|| name.clone())?
+        read().map_err(with_hint).with_context(|| name.clone())?
     };
     warn_about(&name, &file, ui);
     Ok(file)
+}
+
+/// An error, and what to do about it.
+fn with_hint(error: ReadError) -> anyhow::Error {
+    let is_ratio = matches!(error, ReadError::Ratio { .. });
+    let error = anyhow::Error::from(error);
+    if is_ratio { error.context("refused without --any-ratio") } else { error }
 }
 
 fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
@@ -63,9 +76,9 @@ fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
 
 /// As [`read_mesh`], but the meshes of a scene keep to themselves unless they are to be merged: what a stream
 /// holds.
-pub fn read_for_stream(path: &Path, merge: bool, ui: &Ui) -> anyhow::Result<MeshFile> {
+pub fn read_for_stream(path: &Path, merge: bool, reading: &Reading, ui: &Ui) -> anyhow::Result<MeshFile> {
     let read = || {
-        let scene = lwc::io::read_scene(path)?;
+        let scene = reading.options().read_scene(path)?;
         if merge || scene.is_single() { scene.merge() } else { scene.pack() }
     };
     read_with(path, read, ui)
@@ -82,10 +95,15 @@ pub fn in_place(mesh: TriMesh, attributes: Attributes) -> Result<MeshFile, ReadE
 }
 
 /// Reads a mesh file, or decodes the finest mesh of a stream if that is what the ending says.
-pub fn read_mesh_or_stream(path: &Path, limits: lwc::Limits, ui: &Ui) -> anyhow::Result<TriMesh> {
+pub fn read_mesh_or_stream(
+    path: &Path,
+    limits: lwc::Limits,
+    reading: &Reading,
+    ui: &Ui,
+) -> anyhow::Result<TriMesh> {
     let is_stream = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("lwc"));
     if !is_stream {
-        return Ok(read_mesh(path, ui)?.mesh);
+        return Ok(read_mesh(path, reading, ui)?.mesh);
     }
     let source = StreamSource::File(path.to_owned());
     let options = DecodeOptions::new().limits(limits);

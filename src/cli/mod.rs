@@ -17,6 +17,7 @@ mod passes;
 mod quantity;
 mod rate_distortion;
 pub mod render;
+pub mod signals;
 pub mod ui;
 mod verify;
 mod verify_attributes;

@@ -3,17 +3,24 @@
 use std::{
     fs::{self, File, Permissions},
     io::{self, BufWriter, Write},
-    path::Path,
+    path::{Path, PathBuf},
+    sync::{Mutex, MutexGuard, PoisonError},
 };
+use tempfile::NamedTempFile;
 
 /// Bytes gathered before a write reaches the system.
 const BUFFER_BYTES: usize = 1 << 18;
 
+/// Links to links that are followed before they are taken for a circle; Linux does the same.
+const MAX_LINKS: usize = 40;
+
 /// Writes the file `path` with `write`: into a temporary file beside it, renamed to `path` at the end.
 ///
-/// If anything fails, the temporary file is removed and what was at `path` before is still there. A replaced
-/// file keeps its permissions, a symbolic link keeps pointing to the file that is replaced. What is there
-/// and is not a regular file, such as `/dev/stdout` or a pipe, is written to directly.
+/// If anything fails, the temporary file is removed and what was at `path` before is still there. The new file is
+/// on the disk before it has its name, so that the name never leads to half a file, power cuts included. A
+/// replaced file keeps its permissions, a symbolic link keeps pointing to the file that is replaced, or that
+/// appears if there was none. What is there and is not a regular file, such as `/dev/stdout` or a pipe, is written
+/// to directly.
 ///
 /// # Errors
 /// Those of `write`, and of the file system.
@@ -28,29 +35,116 @@ pub fn write_atomic<E: From<io::Error>>(
             write(&mut out)?;
             return Ok(out.flush()?);
         }
-        Ok(metadata) => Some((fs::canonicalize(path)?, metadata.permissions())),
+        Ok(metadata) => Some(metadata.permissions()),
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
         Err(error) => return Err(error.into()),
     };
-    let target = existing.as_ref().map_or(path, |(real_path, _)| real_path);
+    let target = followed(path)?;
     let directory = match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".lwc-");
-    if let Some(permissions) = new_file_permissions() {
-        builder.permissions(permissions);
-    }
-    let mut out = BufWriter::with_capacity(BUFFER_BYTES, builder.tempfile_in(directory)?);
+    let mut out = BufWriter::with_capacity(BUFFER_BYTES, Unfinished::new(directory)?);
     write(&mut out)?;
-    let temporary = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-    if let Some((_, permissions)) = &existing {
-        temporary.as_file().set_permissions(permissions.clone())?;
+    let unfinished = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+    if let Some(permissions) = existing {
+        unfinished.file.as_file().set_permissions(permissions)?;
     }
-    temporary.persist(target).map_err(|failed| failed.error)?;
+    unfinished.file.as_file().sync_all()?;
+    unfinished.persist(&target)?;
+    sync_directory(directory);
     Ok(())
+}
+
+/// Where symbolic links lead, be there a file or not.
+fn followed(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        let is_link = fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_symlink());
+        if !is_link {
+            return Ok(path);
+        }
+        let folder = path.parent().map(Path::to_owned).unwrap_or_default();
+        path = folder.join(fs::read_link(&path)?);
+    }
+    Err(io::Error::other("too many symbolic links"))
+}
+
+/// Makes a new name last. Not every system can, and the file itself is safe: an error is none of the caller's.
+fn sync_directory(directory: &Path) {
+    if cfg!(unix) {
+        let _ = File::open(directory).and_then(|directory| directory.sync_all());
+    }
+}
+
+/// Temporary files at work, which [`abandon_writes`] takes away.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the temporary files of all [`write_atomic`] at work, then calls `end`, for programs that end early.
+///
+/// No file is begun and none gets its name before `end` returns: threads that want to do so wait.
+pub fn abandon_writes<T>(end: impl FnOnce() -> T) -> T {
+    let paths = unfinished();
+    for path in paths.iter() {
+        // What cannot be removed remains: there is nobody to tell.
+        let _ = fs::remove_file(path);
+    }
+    end()
+}
+
+/// A temporary file that [`abandon_writes`] knows.
+struct Unfinished {
+    file: NamedTempFile,
+    entry: Entry,
+}
+
+/// A path in the list, as long as this lives.
+struct Entry(PathBuf);
+
+impl Drop for Entry {
+    fn drop(&mut self) {
+        unfinished().retain(|path| *path != self.0);
+    }
+}
+
+impl Unfinished {
+    fn new(directory: &Path) -> io::Result<Self> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".lwc-");
+        if let Some(permissions) = new_file_permissions() {
+            builder.permissions(permissions);
+        }
+        let mut paths = unfinished();
+        let file = builder.tempfile_in(directory)?;
+        paths.push(file.path().to_owned());
+        let entry = Entry(file.path().to_owned());
+        Ok(Self { file, entry })
+    }
+
+    /// Gives the file its name.
+    fn persist(self, target: &Path) -> io::Result<()> {
+        let Self { file, entry } = self;
+        let held = unfinished();
+        let persisted = file.persist(target);
+        // The entry wants the list for itself.
+        drop(held);
+        drop(entry);
+        persisted.map(drop).map_err(|failed| failed.error)
+    }
+}
+
+impl Write for Unfinished {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        self.file.write(buffer)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
 }
 
 /// Temporary files are private by default; ours becomes an ordinary file, for which the umask decides.

@@ -19,15 +19,14 @@ pub(super) struct MeshBuilder {
     /// Indices of faces and corners may end early: the triangles that follow have no row.
     pub attributes: Attributes,
     pub report: ReadReport,
-    /// The most indices of attributes.
-    max_rows: usize,
+    /// Bytes of the file, as far as they are read.
+    pub num_bytes: usize,
 }
 
 impl MeshBuilder {
     /// For a file of so many bytes.
     pub fn for_file(num_bytes: usize) -> Self {
-        let max_rows = num_bytes.saturating_mul(MAX_ROWS_PER_BYTE).max(MIN_MAX_ROWS);
-        Self { max_rows, ..Self::default() }
+        Self { num_bytes, ..Self::default() }
     }
 
     /// Whether so many attributes may have an index for each of `num_elements`.
@@ -35,7 +34,8 @@ impl MeshBuilder {
     /// # Errors
     /// If that is out of proportion to the file.
     pub fn check_rows(&self, num_attributes: usize, num_elements: usize) -> Result<(), ReadError> {
-        if num_attributes.saturating_mul(num_elements) <= self.max_rows {
+        let max_rows = self.num_bytes.saturating_mul(MAX_ROWS_PER_BYTE).max(MIN_MAX_ROWS);
+        if num_attributes.saturating_mul(num_elements) <= max_rows {
             return Ok(());
         }
         let message = format!("{num_attributes} attributes of {num_elements} triangles or corners");

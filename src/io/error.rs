@@ -60,6 +60,14 @@ pub enum ReadError {
         /// Which limit.
         message: String,
     },
+    /// A `.zst` file unpacks to more than a file of its size may (see [`super::ReadOptions`]).
+    #[error("too large: {packed} bytes unpack to more than {most}, which no mesh does")]
+    Ratio {
+        /// Bytes of the file that were read.
+        packed: u64,
+        /// Bytes that they may unpack to.
+        most: u64,
+    },
 }
 
 impl ReadError {

@@ -5,7 +5,8 @@
 //! [`ReadReport`], these become a file, and nothing else knows that files exist.
 //!
 //! Input is not trusted. No input makes a reader panic, and counts declared in a file never decide how much
-//! is allocated: memory grows as the data that fills it is found, to a small multiple of the file's size.
+//! is allocated: memory grows as the data that fills it is found, to a small multiple of the file's size. A `.zst` file
+//! that unpacks out of all proportion is refused ([`ReadOptions`]), and OBJ, PLY and STL are unpacked in pieces.
 //!
 //! ```no_run
 //! let file = lwc::io::read("horse.ply.zst")?;
@@ -25,30 +26,29 @@ mod obj;
 mod ply;
 #[cfg(feature = "gltf")]
 mod scene;
+mod source;
 mod stl;
 mod text;
 mod texture;
+mod unpack;
 
 #[cfg(feature = "gltf")]
 pub use crate::mesh::Instance;
-pub use atomic::write_atomic;
+pub use atomic::{abandon_writes, write_atomic};
 pub use error::{Place, ReadError, WriteError};
 #[cfg(feature = "las")]
 pub use las::TerrainOptions;
 #[cfg(feature = "gltf")]
 pub use scene::{SCENE_MESH, Scene};
+pub use unpack::ReadOptions;
 
 use crate::mesh::{Attribute, Attributes, Domain, Semantic, TriMesh, Values};
-use std::{
-    fs::File,
-    io::{self, Read, Write},
-    path::Path,
-};
+use source::Source;
+use std::{io::Write, path::Path};
 
 /// The largest file that is read, in bytes after decompression: 16 GiB.
 ///
-/// It is there for the `.zst` file of a few bytes that would unpack to fill the machine. A mesh of a hundred
-/// million vertices is smaller in every format but the wordiest OBJ.
+/// A mesh of a hundred million vertices is smaller in every format but the wordiest OBJ.
 pub const MAX_FILE_BYTES: u64 = 16 << 30;
 
 /// A mesh file format.
@@ -191,29 +191,7 @@ pub struct ReadReport {
 /// If the file cannot be read, its ending is unknown, it is larger than [`MAX_FILE_BYTES`], or it is damaged.
 /// The error names the place in the file and the cause; the caller knows the file's name and puts it in front.
 pub fn read(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
-    let path = path.as_ref();
-    let (bytes, format) = read_file(path)?;
-    match format {
-        #[cfg(feature = "gltf")]
-        Format::Glb | Format::Gltf => gltf::read(&bytes, path.parent())?.merge(),
-        _ => read_bytes(&bytes, format),
-    }
-}
-
-/// The (uncompressed) bytes of a file, and what its ending says they are.
-fn read_file(path: &Path) -> Result<(Vec<u8>, Format), ReadError> {
-    let (format, is_compressed) = format_and_compression(path).ok_or(ReadError::UnknownEnding)?;
-    let file = File::open(path)?;
-    let bytes = if is_compressed {
-        read_limited(zstd::Decoder::new(file)?, 0).map_err(|error| match error {
-            ReadError::Io(cause) => ReadError::Zstd(cause),
-            other => other,
-        })?
-    } else {
-        let size_hint = file.metadata()?.len();
-        read_limited(file, size_hint)?
-    };
-    Ok((bytes, format))
+    ReadOptions::default().read(path)
 }
 
 /// Reads a file of several meshes, each in its own coordinates; one of a format without scenes is one mesh in
@@ -223,12 +201,7 @@ fn read_file(path: &Path) -> Result<(Vec<u8>, Format), ReadError> {
 /// As [`read`].
 #[cfg(feature = "gltf")]
 pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene, ReadError> {
-    let path = path.as_ref();
-    let (bytes, format) = read_file(path)?;
-    match format {
-        Format::Glb | Format::Gltf => gltf::read(&bytes, path.parent()),
-        _ => Ok(read_bytes(&bytes, format)?.into()),
-    }
+    ReadOptions::default().read_scene(path)
 }
 
 /// Reads a point cloud (`.las`, `.laz`, also `.zst`) and triangulates it in the plane.
@@ -237,10 +210,53 @@ pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene, ReadError> {
 /// As [`read`]; the ending of any other format is an unknown one here.
 #[cfg(feature = "las")]
 pub fn read_terrain(path: impl AsRef<Path>, options: &TerrainOptions) -> Result<MeshFile, ReadError> {
-    let (bytes, format) = read_file(path.as_ref())?;
-    match format {
-        Format::Las | Format::Laz => las::read(&bytes, options),
-        _ => Err(ReadError::UnknownEnding),
+    ReadOptions::default().read_terrain(path, options)
+}
+
+impl ReadOptions {
+    /// As [`read()`].
+    ///
+    /// # Errors
+    /// As [`read()`].
+    pub fn read(&self, path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
+        let path = path.as_ref();
+        let (source, format) = self.open(path)?;
+        match format {
+            #[cfg(feature = "gltf")]
+            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent())?.merge(),
+            _ => read_source(source, format),
+        }
+    }
+
+    /// As [`read_scene()`].
+    ///
+    /// # Errors
+    /// As [`read()`].
+    #[cfg(feature = "gltf")]
+    pub fn read_scene(&self, path: impl AsRef<Path>) -> Result<Scene, ReadError> {
+        let path = path.as_ref();
+        let (source, format) = self.open(path)?;
+        match format {
+            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent()),
+            _ => Ok(read_source(source, format)?.into()),
+        }
+    }
+
+    /// As [`read_terrain()`].
+    ///
+    /// # Errors
+    /// As [`read_terrain()`].
+    #[cfg(feature = "las")]
+    pub fn read_terrain(
+        &self,
+        path: impl AsRef<Path>,
+        options: &TerrainOptions,
+    ) -> Result<MeshFile, ReadError> {
+        let (source, format) = self.open(path.as_ref())?;
+        match format {
+            Format::Las | Format::Laz => las::read(&source.into_bytes()?, options),
+            _ => Err(ReadError::UnknownEnding),
+        }
     }
 }
 
@@ -260,28 +276,26 @@ pub fn read_terrain_bytes(bytes: &[u8], options: &TerrainOptions) -> Result<Mesh
 /// As [`read`].
 pub fn read_bytes(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
     match format {
-        Format::Obj => obj::read(bytes),
-        Format::Ply => ply::read(bytes),
-        Format::Stl => stl::read(bytes),
         #[cfg(feature = "gltf")]
         Format::Glb | Format::Gltf => gltf::read(bytes, None)?.merge(),
         #[cfg(feature = "las")]
         Format::Las | Format::Laz => las::read(bytes, &TerrainOptions::default()),
+        _ => read_source(Source::of_bytes(bytes), format),
     }
 }
 
-fn read_limited(source: impl Read, size_hint: u64) -> Result<Vec<u8>, ReadError> {
-    let mut bytes = Vec::new();
-    if size_hint <= MAX_FILE_BYTES {
-        bytes
-            .try_reserve_exact(usize::try_from(size_hint).unwrap_or(usize::MAX))
-            .map_err(io::Error::other)?;
-        source.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes)?;
-    }
-    if size_hint.max(bytes.len() as u64) > MAX_FILE_BYTES {
-        return Err(ReadError::TooLarge { message: format!("more than {MAX_FILE_BYTES} bytes") });
-    }
-    Ok(bytes)
+/// Reads what need not be in memory as a whole; all else is.
+fn read_source(mut source: Source, format: Format) -> Result<MeshFile, ReadError> {
+    let found = match format {
+        Format::Obj => obj::read(&mut source),
+        Format::Ply => ply::read(&mut source),
+        Format::Stl => stl::read(&mut source),
+        #[cfg(any(feature = "gltf", feature = "las"))]
+        _ => return read_bytes(&source.into_bytes()?, format),
+    };
+    // A fault of the disk is not one of the mesh.
+    source.finish()?;
+    found
 }
 
 /// What a writer left out because the format has no place for it.

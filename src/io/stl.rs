@@ -6,7 +6,8 @@
 use super::{
     MeshFile, Place, ReadError, WriteError,
     builder::MeshBuilder,
-    text::{Lines, parse_number, quoted, words},
+    source::Source,
+    text::{parse_number, quoted, words},
 };
 use crate::mesh::TriMesh;
 use std::{
@@ -19,24 +20,29 @@ const BINARY_HEADER_BYTES: usize = 84;
 /// Normal and three corners, each three float32, and two bytes of whatever.
 const BINARY_TRIANGLE_BYTES: usize = 50;
 
+/// Blanks in front of `solid` that are looked past.
+const MAX_BLANKS: usize = 4096;
+
 /// Reads an STL file.
-pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
-    // Binary files may begin with `solid` as well, so the size decides first.
-    let declared_size = bytes.get(80..BINARY_HEADER_BYTES).and_then(|raw| {
-        let num_triangles = u32::from_le_bytes(raw.try_into().ok()?);
-        Some(BINARY_HEADER_BYTES as u64 + BINARY_TRIANGLE_BYTES as u64 * u64::from(num_triangles))
-    });
-    if declared_size == Some(bytes.len() as u64) {
-        return read_binary(bytes);
-    }
-    if bytes.trim_ascii_start().starts_with(b"solid") && !bytes.contains(&0) {
-        return read_text(bytes);
-    }
-    let message = match declared_size {
-        Some(size) => format!("the file declares {size} bytes and has {}", bytes.len()),
-        None => "not an STL file: neither `solid` nor a binary header".to_owned(),
+pub(super) fn read(source: &mut Source) -> Result<MeshFile, ReadError> {
+    let begins_as_text = source.peek(MAX_BLANKS).trim_ascii_start().starts_with(b"solid");
+    let Some(header) = source.peek(BINARY_HEADER_BYTES).first_chunk::<BINARY_HEADER_BYTES>() else {
+        return if begins_as_text { read_text(source) } else { Err(neither(source)) };
     };
-    Err(ReadError::syntax(Place::Byte(bytes.len().min(80)), message))
+    let num_triangles = u32::from_le_bytes([80, 81, 82, 83].map(|at| header[at]));
+    let last_of_count = header[83];
+    let declared_size = BINARY_HEADER_BYTES as u64 + BINARY_TRIANGLE_BYTES as u64 * u64::from(num_triangles);
+    // Binary files may begin with `solid` as well, so the size decides. Before it is known: a text has no control
+    // character in the place where a count below 150 million has one.
+    let is_text = begins_as_text
+        && source.num_bytes().map_or(last_of_count >= b'\t', |num_bytes| num_bytes != declared_size);
+    if is_text { read_text(source) } else { read_binary(source, num_triangles, declared_size) }
+}
+
+fn neither(source: &mut Source) -> ReadError {
+    source.skip(u64::MAX);
+    let message = "not an STL file: neither `solid` nor a binary header";
+    ReadError::syntax(Place::Byte(source.offset()), message)
 }
 
 /// Writes a binary file. Coordinates are rounded to float32.
@@ -80,9 +86,21 @@ struct Welder {
 }
 
 impl Welder {
-    fn vertex(&mut self, position: [f64; 3], place: impl FnOnce() -> Place) -> Result<u32, ReadError> {
+    /// A triangle of a binary file.
+    fn triangle(&mut self, record: &[u8], place: Place) -> Result<(), ReadError> {
+        let (floats, _) = record.as_chunks::<4>();
+        let mut triangle = [0; 3];
+        for (corner, xyz) in triangle.iter_mut().zip(floats[3..].chunks_exact(3)) {
+            let position = std::array::from_fn(|axis| f64::from(f32::from_le_bytes(xyz[axis])));
+            *corner = self.vertex(position, place)?;
+        }
+        self.builder.triangles.push(triangle);
+        Ok(())
+    }
+
+    fn vertex(&mut self, position: [f64; 3], place: Place) -> Result<u32, ReadError> {
         if !position.iter().all(|c| c.is_finite()) {
-            return Err(ReadError::syntax(place(), "a corner has a coordinate that is not finite"));
+            return Err(ReadError::syntax(place, "a corner has a coordinate that is not finite"));
         }
         // Adding zero turns -0 into 0, which is the same place.
         let key = position.map(|c| (c + 0.0).to_bits());
@@ -102,32 +120,44 @@ impl Welder {
     }
 }
 
-fn read_binary(bytes: &[u8]) -> Result<MeshFile, ReadError> {
-    let mut welder = Welder::default();
-    let (records, _) = bytes[BINARY_HEADER_BYTES..].as_chunks::<BINARY_TRIANGLE_BYTES>();
-    for (k, record) in records.iter().enumerate() {
-        let place = || Place::Byte(BINARY_HEADER_BYTES + k * BINARY_TRIANGLE_BYTES);
-        let (floats, _) = record.as_chunks::<4>();
-        let mut triangle = [0; 3];
-        for (corner, xyz) in triangle.iter_mut().zip(floats[3..].chunks_exact(3)) {
-            let position = std::array::from_fn(|axis| f64::from(f32::from_le_bytes(xyz[axis])));
-            *corner = welder.vertex(position, place)?;
-        }
-        welder.builder.triangles.push(triangle);
+fn read_binary(source: &mut Source, num_triangles: u32, declared_size: u64) -> Result<MeshFile, ReadError> {
+    let misfit = |num_bytes: u64| {
+        let message = format!("the file declares {declared_size} bytes and has {num_bytes}");
+        ReadError::syntax(Place::Byte(80), message)
+    };
+    if let Some(num_bytes) = source.num_bytes().filter(|&num_bytes| num_bytes != declared_size) {
+        return Err(misfit(num_bytes));
     }
-    welder.builder.finish()
+    source.skip(BINARY_HEADER_BYTES as u64);
+    let mut welder = Welder::default();
+    for _ in 0..num_triangles {
+        let place = Place::Byte(source.offset());
+        match source.take(BINARY_TRIANGLE_BYTES) {
+            Some(record) => welder.triangle(record, place)?,
+            None => break,
+        }
+    }
+    source.skip(u64::MAX);
+    match source.offset() as u64 {
+        num_bytes if num_bytes == declared_size => welder.builder.finish(),
+        num_bytes => Err(misfit(num_bytes)),
+    }
 }
 
 /// Reads `vertex` lines between `outer loop` and `endloop`. The other statements carry nothing we need.
-fn read_text(bytes: &[u8]) -> Result<MeshFile, ReadError> {
+fn read_text(source: &mut Source) -> Result<MeshFile, ReadError> {
     let mut welder = Welder::default();
     let mut corners = Vec::new();
     let mut is_in_loop = false;
-    let mut lines = Lines::new(bytes);
-    for (number, line) in lines.by_ref() {
-        let place = Place::Line(number);
-        let bad = |cause: &str| ReadError::syntax(place, format!("{cause}: {}", quoted(line)));
-        let mut words = words(line);
+    loop {
+        source.skip_empty_lines();
+        let Some(line) = source.line() else { break };
+        let place = Place::Line(line.number);
+        let bad = |cause: &str| ReadError::syntax(place, format!("{cause}: {}", quoted(line.text)));
+        if line.text.contains(&0) {
+            return Err(bad("neither a text nor a binary file of the size it declares"));
+        }
+        let mut words = words(line.text);
         match words.next() {
             Some(b"outer") if !is_in_loop => {
                 is_in_loop = true;
@@ -139,7 +169,7 @@ fn read_text(bytes: &[u8]) -> Result<MeshFile, ReadError> {
                     let number = words.next().and_then(parse_number);
                     *coordinate = number.ok_or_else(|| bad("a vertex needs three numbers"))?;
                 }
-                corners.push(welder.vertex(position, || place)?);
+                corners.push(welder.vertex(position, place)?);
             }
             Some(b"endloop") if is_in_loop => {
                 is_in_loop = false;
@@ -151,7 +181,7 @@ fn read_text(bytes: &[u8]) -> Result<MeshFile, ReadError> {
         }
     }
     if is_in_loop {
-        return Err(ReadError::syntax(Place::Line(lines.number()), "the file ends in a facet"));
+        return Err(ReadError::syntax(Place::Line(source.num_lines()), "the file ends in a facet"));
     }
     welder.builder.finish()
 }

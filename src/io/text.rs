@@ -1,53 +1,4 @@
-//! Lines and words of text that need not be UTF-8.
-
-/// The lines of a text: number from 1, and the line without its end (LF, CR LF or CR alone).
-#[derive(Clone)]
-pub(super) struct Lines<'a> {
-    bytes: &'a [u8],
-    offset: usize,
-    number: usize,
-}
-
-impl<'a> Lines<'a> {
-    pub fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, offset: 0, number: 0 }
-    }
-
-    /// Where the next line starts.
-    pub fn offset(&self) -> usize {
-        self.offset
-    }
-
-    /// How many bytes there are from the next line on.
-    pub fn num_left(&self) -> usize {
-        self.bytes.len() - self.offset
-    }
-
-    /// The number of the line last returned, 0 before the first.
-    pub fn number(&self) -> usize {
-        self.number
-    }
-}
-
-impl<'a> Iterator for Lines<'a> {
-    type Item = (usize, &'a [u8]);
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let rest = &self.bytes[self.offset..];
-        if rest.is_empty() {
-            return None;
-        }
-        let length = rest.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(rest.len());
-        let end_length = match rest[length..] {
-            [b'\r', b'\n', ..] => 2,
-            [_, ..] => 1,
-            [] => 0,
-        };
-        self.offset += length + end_length;
-        self.number += 1;
-        Some((self.number, &rest[..length]))
-    }
-}
+//! Words of text that need not be UTF-8.
 
 /// The words of a line, separated by ASCII white space.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
@@ -74,15 +25,6 @@ pub(super) fn quoted(text: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn lines_end_in_any_way() {
-        let lines: Vec<_> = Lines::new(b"a\nb\r\n\rd\n\ne").collect();
-        let expected: [(usize, &[u8]); 6] = [(1, b"a"), (2, b"b"), (3, b""), (4, b"d"), (5, b""), (6, b"e")];
-        assert_eq!(lines, expected);
-        assert_eq!(Lines::new(b"").count(), 0);
-        assert_eq!(Lines::new(b"\n").count(), 1);
-    }
 
     #[test]
     fn quotes_are_short_and_printable() {

@@ -32,9 +32,7 @@ const box: MeshUpdate['box'] = [Infinity, Infinity, Infinity, -Infinity, -Infini
 scope.onmessage = async ({ data }) => {
   switch (data.type) {
     case 'open':
-      decoder = new Decoder(await loadWasm(data.module), data.options);
-      slice = data.slice;
-      hasAttributes = data.options.attributes ?? false;
+      await open(data);
       break;
     case 'bytes':
       waiting.push(data.bytes);
@@ -49,35 +47,66 @@ scope.onmessage = async ({ data }) => {
   if (!isRunning) void run();
 };
 
+async function open({ module, options, slice: wanted }: Extract<ToWorker, { type: 'open' }>): Promise<void> {
+  slice = wanted;
+  hasAttributes = options.attributes ?? false;
+  try {
+    decoder = new Decoder(await loadWasm(module), options);
+  } catch (caught) {
+    fail(caught);
+  }
+}
+
 /** Decodes slice by slice; between two slices the messages that have come are read. */
 async function run(): Promise<void> {
-  if (!decoder) return;
+  if (!decoder && !error) return;
   isRunning = true;
-  while (workSlice(decoder)) await nextTask();
+  while (workSlice()) await nextTask();
   isRunning = false;
   if (fed > 0) scope.postMessage({ type: 'decoded', pieces: fed });
   fed = 0;
-  answerEnd(decoder);
+  answerEnd();
 }
 
 /** True if there is more to do. */
-function workSlice(decoder: Decoder): boolean {
+function workSlice(): boolean {
+  if (!decoder) {
+    fed += waiting.splice(0).length;
+    return false;
+  }
   const start = performance.now();
-  const isShowing = isTaken && isDirty;
-  const more = isShowing ? showSlice(decoder) : decodeSlice(decoder);
+  let more = false;
+  try {
+    more = isTaken && isDirty ? showSlice(decoder) : decodeSlice(decoder);
+  } catch (caught) {
+    fail(caught);
+  }
   const milliseconds = performance.now() - start;
   decodeMilliseconds += milliseconds;
   longestSlice = Math.max(longestSlice, milliseconds);
   return more || (isTaken && isDirty);
 }
 
+/** A stream that is wrong leaves the mesh so far. After anything else, such as a trap, there is no decoder any more. */
+function fail(caught: unknown): void {
+  const message = caught instanceof Error ? caught.message : String(caught);
+  if (caught instanceof DecodeError) {
+    error = { kind: caught.kind, message };
+    return;
+  }
+  error = { kind: undefined, message: `the decoder broke off: ${message}` };
+  decoder = undefined;
+  isDirty = false;
+}
+
 /** The mesh goes out before decoding goes on. */
 function showSlice(decoder: Decoder): boolean {
   if (!decoder.prepareFor(slice)) return true;
-  isTaken = false;
-  isDirty = false;
   if (hasAttributes) sendDrawing(decoder);
   else send(decoder);
+  // What breaks off before this still owes the page an answer.
+  isTaken = false;
+  isDirty = false;
   return true;
 }
 
@@ -85,40 +114,34 @@ function decodeSlice(decoder: Decoder): boolean {
   const pieces = waiting.splice(0);
   fed += pieces.length;
   if (error) return false;
-  try {
-    for (const bytes of pieces) decoder.feed(bytes);
-    const end = performance.now() + slice;
-    do {
-      const step = decoder.stepWithin(WORK);
-      if (!hasInfo && decoder.info) {
-        hasInfo = true;
-        scope.postMessage({ type: 'info', info: decoder.info });
-      }
-      if (step.type === 'waiting') {
-        // Values come behind the pass that brings their vertices.
-        isDirty ||= hasAttributes && decoder.passesDone > 0 && decoder.attributeBytes !== sentAttributes;
-        return false;
-      }
-      if (step.type === 'finished') {
-        changes.add(step.update, sent.triangles);
-        isDirty = true;
-      }
-    } while (performance.now() < end);
-    return true;
-  } catch (caught) {
-    const kind = caught instanceof DecodeError ? caught.kind : undefined;
-    error = { kind, message: caught instanceof Error ? caught.message : String(caught) };
-    return false;
-  }
+  for (const bytes of pieces) decoder.feed(bytes);
+  const end = performance.now() + slice;
+  do {
+    const step = decoder.stepWithin(WORK);
+    if (!hasInfo && decoder.info) {
+      hasInfo = true;
+      scope.postMessage({ type: 'info', info: decoder.info });
+    }
+    if (step.type === 'waiting') {
+      // Values come behind the pass that brings their vertices.
+      isDirty ||= hasAttributes && decoder.passesDone > 0 && decoder.attributeBytes !== sentAttributes;
+      return false;
+    }
+    if (step.type === 'finished') {
+      changes.add(step.update, sent.triangles);
+      isDirty = true;
+    }
+  } while (performance.now() < end);
+  return true;
 }
 
 /** After the last mesh: what is wrong with the stream, or its end. */
-function answerEnd(decoder: Decoder): void {
+function answerEnd(): void {
   if (!isTaken) return;
   if (error) {
     isTaken = false;
     scope.postMessage({ type: 'error', ...error });
-  } else if (hasEnded || decoder.isComplete) {
+  } else if (hasEnded || decoder?.isComplete) {
     isTaken = false;
     scope.postMessage({ type: 'done' });
   }

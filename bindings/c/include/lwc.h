@@ -55,6 +55,9 @@ typedef enum LwcStatus {
   LWC_STATUS_INTERNAL = 16,
   // An attribute does not fit its mesh, or a buffer its attribute.
   LWC_STATUS_ATTRIBUTE = 17,
+  // An array cannot be one: its address is not a multiple of its type's alignment, or it has more bytes than memory
+  // can.
+  LWC_STATUS_ARRAY = 18,
 } LwcStatus;
 
 // What the values mean.
@@ -297,7 +300,8 @@ enum LwcStatus lwc_decode(const uint8_t *bytes,
                           const struct LwcDecodeOptions *options,
                           struct LwcMesh **mesh);
 
-// Makes a decoder. `options` may be null for the defaults. Null if memory is short.
+// Makes a decoder. `options` may be null for the defaults. Null if that fails: lwc_last_error says why. Where memory is
+// short the program ends, as in all functions here.
 //
 // # Safety
 // `options` is null or can be read.

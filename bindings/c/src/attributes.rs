@@ -1,7 +1,7 @@
 //! What a mesh carries besides positions and triangles. Tables and rows are copied in and out; texts belong to the mesh.
 
 use crate::error::{Status, guard, tell};
-use crate::{Mesh, elements, object, put};
+use crate::{Mesh, check_array, elements, object, put};
 use lwc::mesh::{self, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
 use std::ffi::{CStr, CString, c_char, c_void};
 
@@ -369,11 +369,9 @@ pub unsafe extern "C" fn lwc_mesh_attribute_name(
 /// # Safety
 /// `to` is null, or has as many elements as `from`.
 unsafe fn copy_out<T: Copy>(to: *mut T, from: &[T]) -> Result<(), Status> {
-    if to.is_null() && !from.is_empty() {
-        return Err(Status::NullPointer);
-    }
     if !from.is_empty() {
-        // SAFETY: by the contract above, and not null; what C owns does not overlap with what we made.
+        check_array(to, from.len())?;
+        // SAFETY: by the contract above, neither null nor out of line; what C owns does not overlap with what we made.
         unsafe { std::ptr::copy_nonoverlapping(from.as_ptr(), to, from.len()) };
     }
     Ok(())

@@ -45,6 +45,9 @@ pub enum Status {
     Internal = 16,
     /// An attribute does not fit its mesh, or a buffer its attribute.
     Attribute = 17,
+    /// An array cannot be one: its address is not a multiple of its type's alignment, or it has more bytes than memory
+    /// can.
+    Array = 18,
 }
 
 thread_local! {

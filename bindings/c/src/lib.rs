@@ -93,18 +93,34 @@ unsafe fn object<'a, T>(pointer: *mut T) -> Result<&'a mut T, Status> {
     unsafe { pointer.as_mut() }.ok_or(Status::NullPointer)
 }
 
-/// As many elements as C says there are.
+/// As many elements as C says there are. What no array can be, such as one of −1 elements, is refused.
 ///
 /// # Safety
 /// `pointer` has `length` elements that live as long as the caller's function; it may be null if there are
 /// none.
 unsafe fn elements<'a, T>(pointer: *const T, length: usize) -> Result<&'a [T], Status> {
-    match (pointer.is_null(), length) {
-        (_, 0) => Ok(&[]),
-        (true, _) => Err(Status::NullPointer),
-        // SAFETY: by the contract above, and not null.
-        (false, _) => Ok(unsafe { slice::from_raw_parts(pointer, length) }),
+    if length == 0 {
+        return Ok(&[]);
     }
+    check_array(pointer, length)?;
+    // SAFETY: by the contract above, and not null, aligned and of a size that there is.
+    Ok(unsafe { slice::from_raw_parts(pointer, length) })
+}
+
+/// Whether there can be an array of `length` elements at `pointer`.
+fn check_array<T>(pointer: *const T, length: usize) -> Result<(), Status> {
+    if pointer.is_null() {
+        return Err(Status::NullPointer);
+    }
+    let (size, alignment) = (size_of::<T>(), align_of::<T>());
+    let bad = |sentence: String| Err(error::tell(Status::Array, &sentence));
+    if length.checked_mul(size).is_none_or(|bytes| bytes > isize::MAX as usize) {
+        return bad(format!("an array of {length} elements of {size} bytes is larger than memory"));
+    }
+    if !pointer.is_aligned() {
+        return bad(format!("an array is at {pointer:p}, which is not a multiple of {alignment}"));
+    }
+    Ok(())
 }
 
 /// Where a result goes.
@@ -112,10 +128,8 @@ unsafe fn elements<'a, T>(pointer: *const T, length: usize) -> Result<&'a [T], S
 /// # Safety
 /// `pointer` is null or can be written to.
 unsafe fn put<T>(pointer: *mut T, value: T) -> Result<(), Status> {
-    if pointer.is_null() {
-        return Err(Status::NullPointer);
-    }
-    // SAFETY: by the contract above, and not null.
+    check_array(pointer, 1)?;
+    // SAFETY: by the contract above, and neither null nor out of line.
     unsafe { pointer.write(value) };
     Ok(())
 }
@@ -284,16 +298,22 @@ pub unsafe extern "C" fn lwc_decode(
     })
 }
 
-/// Makes a decoder. `options` may be null for the defaults. Null if memory is short.
+/// Makes a decoder. `options` may be null for the defaults. Null if that fails: lwc_last_error says why. Where memory is
+/// short the program ends, as in all functions here.
 ///
 /// # Safety
 /// `options` is null or can be read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lwc_decoder_new(options: *const DecodeOptions) -> *mut Decoder {
-    // SAFETY: the caller's promise.
-    let options = options::decode(unsafe { options.as_ref() });
-    let decoder = lwc::Decoder::with_options(options);
-    Box::into_raw(Box::new(Decoder { decoder, positions: Vec::new(), rewritten: Vec::new() }))
+    let mut made = std::ptr::null_mut();
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let options = options::decode(unsafe { options.as_ref() });
+        let decoder = lwc::Decoder::with_options(options);
+        made = Box::into_raw(Box::new(Decoder { decoder, positions: Vec::new(), rewritten: Vec::new() }));
+        Ok(())
+    });
+    made
 }
 
 /// Frees a decoder; null is allowed.

@@ -252,3 +252,35 @@ fn null_is_no_object() {
         lwc_encoded_free(null_mut());
     }
 }
+
+/// What a caller's −1 or a pointer into the middle of a number would be: undefined if it were believed.
+#[test]
+fn arrays_that_cannot_be_are_refused() {
+    let (positions, triangles, mut mesh) = ([0.0; 9], [0u32, 1, 2], null_mut());
+    let out_of_line = unsafe { positions.as_ptr().byte_add(1) };
+    unsafe {
+        for (at, length, cause) in [
+            (positions.as_ptr(), usize::MAX, "larger than memory"),
+            (positions.as_ptr(), isize::MAX as usize / 24 + 1, "larger than memory"),
+            (out_of_line, 2, "is not a multiple of 8"),
+        ] {
+            assert_eq!(lwc_mesh_new(at, length, triangles.as_ptr(), 1, &mut mesh), Status::Array);
+            assert!(last_error().contains(cause), "{}", last_error());
+        }
+        let faces = triangles.as_ptr().byte_add(2);
+        assert_eq!(lwc_mesh_new(positions.as_ptr(), 3, faces, 1, &mut mesh), Status::Array);
+        assert!(last_error().contains("is not a multiple of 4"), "{}", last_error());
+        let mut places = [null_mut::<Mesh>(); 2];
+        let place = places.as_mut_ptr().byte_add(1);
+        assert_eq!(lwc_mesh_new(positions.as_ptr(), 3, triangles.as_ptr(), 1, place), Status::Array);
+
+        let decoder = lwc_decoder_new(null());
+        assert_eq!(lwc_decoder_feed(decoder, positions.as_ptr().cast(), usize::MAX), Status::Array);
+        assert_eq!(lwc_decoder_feed(decoder, null(), 1), Status::NullPointer);
+        assert_eq!(lwc_decoder_feed(decoder, null(), 0), Status::Ok, "it has not failed");
+        lwc_decoder_free(decoder);
+        let mut decoded = null_mut();
+        assert_eq!(lwc_decode(positions.as_ptr().cast(), usize::MAX, null(), &mut decoded), Status::Array);
+        assert!(mesh.is_null() && decoded.is_null());
+    }
+}

@@ -3,6 +3,7 @@
 mod error;
 
 mod attributes;
+mod interrupt;
 mod options;
 mod scene;
 
@@ -44,7 +45,9 @@ fn encode<'py>(
     let options = options::encode(py, options)?;
     let mesh = tri_mesh(py, vertices, faces)?;
     let attributes = attributes.map_or(Ok(Attributes::default()), |dict| attributes::read(py, dict))?;
-    let encoded = py.detach(|| lwc::encode_with_attributes(&mesh, &attributes, &options, &|_| {}));
+    let encoded = interrupt::interruptible(py, move |go_on| {
+        lwc::encode_with_attributes(&mesh, &attributes, &options, &|_| go_on.check())
+    })?;
     Ok(PyBytes::new(py, &encoded.map_err(|error| encode_error(py, error))?.bytes))
 }
 
@@ -74,7 +77,7 @@ fn tri_mesh<'py>(
 
 /// Decodes a stream, or the beginning of one. Returns a lwc.Mesh.
 #[pyfunction]
-#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None))]
+#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None))]
 fn decode<'py>(
     py: Python<'py>,
     stream: &[u8],
@@ -82,13 +85,17 @@ fn decode<'py>(
     compensate: bool,
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
+    max_levels: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    attributes::mesh(py, decoded(py, stream, options::decode(level, compensate, max_memory, max_vertices))?)
+    attributes::mesh(
+        py,
+        decoded(py, stream, options::decode(level, compensate, max_memory, max_vertices, max_levels))?,
+    )
 }
 
 /// Decodes a stream, or the beginning of one, as a lwc.Scene: a mesh alone is a scene of one instance.
 #[pyfunction]
-#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None))]
+#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None))]
 fn decode_scene<'py>(
     py: Python<'py>,
     stream: &[u8],
@@ -96,8 +103,12 @@ fn decode_scene<'py>(
     compensate: bool,
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
+    max_levels: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    scene::scene(py, decoded(py, stream, options::decode(level, compensate, max_memory, max_vertices))?)
+    scene::scene(
+        py,
+        decoded(py, stream, options::decode(level, compensate, max_memory, max_vertices, max_levels))?,
+    )
 }
 
 fn decoded(py: Python<'_>, stream: &[u8], options: lwc::DecodeOptions) -> PyResult<(TriMesh, Attributes)> {
@@ -203,15 +214,23 @@ impl From<lwc::Update> for Update {
 }
 
 /// Decodes a stream as it arrives.
+// In a box of its own: Python's memory is aligned to 16 bytes, and a decoder wants 128.
 #[pyclass]
-struct Decoder(lwc::Decoder);
+struct Decoder(Box<lwc::Decoder>);
 
 #[pymethods]
 impl Decoder {
     #[new]
-    #[pyo3(signature = (*, level=None, compensate=true, max_memory=None, max_vertices=None))]
-    fn new(level: Option<u32>, compensate: bool, max_memory: Option<u64>, max_vertices: Option<u32>) -> Self {
-        Self(lwc::Decoder::with_options(options::decode(level, compensate, max_memory, max_vertices)))
+    #[pyo3(signature = (*, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None))]
+    fn new(
+        level: Option<u32>,
+        compensate: bool,
+        max_memory: Option<u64>,
+        max_vertices: Option<u32>,
+        max_levels: Option<u32>,
+    ) -> Self {
+        let options = options::decode(level, compensate, max_memory, max_vertices, max_levels);
+        Self(Box::new(lwc::Decoder::with_options(options)))
     }
 
     /// Takes the next bytes, however they are cut, and applies every pass that is complete.

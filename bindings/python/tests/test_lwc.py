@@ -1,7 +1,10 @@
 """The package that is installed, against the golden streams and numpy."""
 
+import os
 import runpy
+import signal
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -285,3 +288,46 @@ def test_the_example_with_trimesh_runs(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["with_trimesh.py"])
     runpy.run_path(str(Path(__file__).parents[1] / "examples" / "with_trimesh.py"), run_name="__main__")
     assert "volume" in capsys.readouterr().out
+
+
+def test_levels_are_limited():
+    stream = lwc.encode(*grid(40))
+    levels = lwc.info(stream)["levels"]
+    assert levels > 2
+    for decode in [lwc.decode, lwc.decode_scene, lambda stream, **limits: lwc.Decoder(**limits).push(stream)]:
+        decode(stream, max_levels=levels)
+        with pytest.raises(lwc.DecodeError) as caught:
+            decode(stream, max_levels=levels - 1)
+        assert caught.value.kind == "Limit"
+
+
+def test_ctrl_c_ends_encode():
+    vertices, faces = grid(700)
+    before = lwc.encode(*grid(10))
+    interrupt = threading.Timer(0.5, os.kill, [os.getpid(), signal.SIGINT])
+    interrupt.start()
+    with pytest.raises(KeyboardInterrupt):
+        # Half a million vertices, many times over: the signal comes in time.
+        for _ in range(1000):
+            lwc.encode(vertices, faces, optimize="size", effort=9)
+    interrupt.join()
+    assert lwc.encode(*grid(10)) == before
+
+
+def test_a_handler_that_does_not_raise_does_not_end_encode():
+    seen = []
+    old = signal.signal(signal.SIGINT, lambda number, frame: seen.append(number))
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        assert lwc.decode(lwc.encode(*grid(30))).vertices.shape == (900, 3)
+    finally:
+        signal.signal(signal.SIGINT, old)
+    assert seen == [signal.SIGINT]
+
+
+def grid(n):
+    i, j = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    vertices = np.stack([i, j, np.sin(0.3 * i) * np.cos(0.2 * j)], axis=-1).reshape(-1, 3).astype(float)
+    a = (i[:-1, :-1] * n + j[:-1, :-1]).ravel()
+    faces = np.concatenate([np.stack([a, a + n, a + n + 1], 1), np.stack([a, a + n + 1, a + 1], 1)])
+    return vertices, faces

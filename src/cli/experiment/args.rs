@@ -1,6 +1,6 @@
 //! What may be typed after `lwc experiment`.
 
-use crate::cli::args::WindowArgs;
+use crate::cli::args::{Reading, WindowArgs};
 use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::value_parser;
@@ -33,6 +33,8 @@ pub struct Experiment {
     #[arg(long, value_name = "N", default_value_t = Settings::default().levels)]
     #[arg(value_parser = value_parser!(u32).range(1..=64))]
     pub levels: u32,
+    #[command(flatten)]
+    pub reading: Reading,
     #[command(flatten)]
     pub window: WindowArgs,
     /// Factor of the radius from each step to the next, 1 to 16.

@@ -25,7 +25,7 @@ pub fn run(args: &Args, ui: &Ui) -> anyhow::Result<()> {
     let bar = ui.bar_with_time_left("experiment");
     let mut before = 0.0;
     for (path, weight) in args.meshes.iter().zip(&weights) {
-        let mesh = read_mesh(path, ui)?.mesh;
+        let mesh = read_mesh(path, &args.reading, ui)?.mesh;
         let share = Share { bar: &bar, begin: before / total, length: weight / total };
         run_mesh(args, path, &mesh, &mut results, &share)?;
         before += weight;

@@ -1,6 +1,6 @@
 //! What may be typed after `lwc render`, and about pictures elsewhere.
 
-use crate::cli::args::{LimitArgs, WindowArgs};
+use crate::cli::args::{LimitArgs, Reading, WindowArgs};
 use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::value_parser;
@@ -49,6 +49,8 @@ pub struct Render {
     /// Pictures in a row of the montage. Default: about as wide as high.
     #[arg(long, value_name = "N", requires = "montage", value_parser = value_parser!(u32).range(1..=64))]
     pub columns: Option<u32>,
+    #[command(flatten)]
+    pub reading: Reading,
     #[command(flatten)]
     pub limits: LimitArgs,
 }

@@ -67,7 +67,7 @@ fn read(args: &Render, ui: &Ui) -> anyhow::Result<MeshFile> {
             let what = "--level and --bytes are for streams (.lwc)".to_owned();
             return Err(Failure::Usage(what)).with_context(|| args.input.display().to_string());
         }
-        return read_mesh(&args.input, ui);
+        return read_mesh(&args.input, &args.reading, ui);
     }
     let source = StreamSource::File(args.input.clone());
     let mut options = DecodeOptions::new().limits(args.limits.limits());

@@ -4,13 +4,20 @@ use std::borrow::Cow;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::ops::Range;
-use std::sync::Arc;
-use std::time::Duration;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// Longest head of a request; browsers send about one kilobyte.
 const MAX_HEAD: u64 = 1 << 14;
-/// How long a request may take to arrive. An answer may take as long as its reader likes.
+/// How long a request may take to arrive.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// How long a reader of an answer may rest. Altogether it may take as long as it likes.
+const REST: Duration = Duration::from_secs(60);
+/// Connections at one time; browsers have about six.
+const MAX_CONNECTIONS: usize = 64;
+/// How long to wait where the system has no connection or no thread to give.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// What matters of a request.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -53,31 +60,80 @@ impl Request {
     }
 }
 
-/// Answers one request on each connection, each in a thread of its own, until the listener fails.
-///
-/// # Errors
-/// Those of the listener.
-pub fn serve<F>(listener: &TcpListener, answer: F) -> io::Result<()>
+/// Answers one request on each connection, each in a thread of its own, for ever: where files or threads are short
+/// it waits until there are some again.
+pub fn serve<F>(listener: &TcpListener, answer: F) -> !
 where
     F: Fn(&Request) -> Answer + Send + Sync + 'static,
 {
     let answer = Arc::new(answer);
+    let places = Arc::new(Places::default());
     loop {
-        let stream = match listener.accept() {
-            Ok((stream, _)) => stream,
-            // Whoever came has left again.
-            Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => continue,
-            Err(error) => return Err(error),
+        // Who comes when all are taken waits in the queue of the system.
+        let place = Places::take(&places);
+        let Ok((stream, _)) = listener.accept() else {
+            thread::sleep(PAUSE);
+            continue;
         };
         let answer = Arc::clone(&answer);
-        // A reader who goes away has lost interest.
-        std::thread::spawn(move || converse(&stream, &*answer).ok());
+        let talk = move || {
+            let _place = place;
+            // A reader who goes away has lost interest.
+            converse(&stream, &*answer).ok()
+        };
+        if thread::Builder::new().spawn(talk).is_err() {
+            thread::sleep(PAUSE);
+        }
+    }
+}
+
+/// How many connections there are.
+#[derive(Default)]
+struct Places {
+    taken: Mutex<usize>,
+    freed: Condvar,
+}
+
+impl Places {
+    /// Waits until fewer than [`MAX_CONNECTIONS`] are taken.
+    fn take(places: &Arc<Self>) -> Place {
+        let taken = places.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        let free = places.freed.wait_while(taken, |taken| *taken >= MAX_CONNECTIONS);
+        *free.unwrap_or_else(PoisonError::into_inner) += 1;
+        Place(Arc::clone(places))
+    }
+}
+
+/// Taken until this is dropped.
+struct Place(Arc<Places>);
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        *self.0.taken.lock().unwrap_or_else(PoisonError::into_inner) -= 1;
+        self.0.freed.notify_one();
+    }
+}
+
+/// Reads from a connection until a moment, however often something comes before it.
+struct Until<'a> {
+    stream: &'a TcpStream,
+    end: Instant,
+}
+
+impl Read for Until<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let left = self.end.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+        self.stream.set_read_timeout(Some(left))?;
+        self.stream.read(buffer)
     }
 }
 
 fn converse(mut stream: &TcpStream, answer: &dyn Fn(&Request) -> Answer) -> io::Result<()> {
-    stream.set_read_timeout(Some(PATIENCE))?;
-    let request = Request::read(stream)?;
+    stream.set_write_timeout(Some(REST))?;
+    let request = Request::read(Until { stream, end: Instant::now() + PATIENCE })?;
     let found = request.as_ref().map_or_else(|| Answer::status(400), answer);
     let with_body = request.is_none_or(|request| request.method != "HEAD");
     found.write(&mut stream, with_body)
@@ -231,6 +287,46 @@ mod tests {
         }
         let endless = format!("GET / HTTP/1.1\r\n{}", "a: b\r\n".repeat(10_000));
         assert_eq!(read(&endless), None);
+    }
+
+    /// A line that never ends, byte by byte, each in good time.
+    #[test]
+    fn a_head_has_one_deadline() {
+        let listener = TcpListener::bind(("127.0.0.1", 0)).unwrap();
+        let mut slow = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (stream, _) = listener.accept().unwrap();
+        let drip = thread::spawn(move || {
+            while slow.write_all(b"a").is_ok() {
+                thread::sleep(Duration::from_millis(5));
+            }
+        });
+        let end = Instant::now() + Duration::from_millis(200);
+        let kind = Request::read(Until { stream: &stream, end }).unwrap_err().kind();
+        assert!(matches!(kind, io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock), "{kind:?}");
+        assert!(Until { stream: &stream, end }.read(&mut [0]).is_err(), "the end stays the end");
+        drop(stream);
+        drip.join().unwrap();
+    }
+
+    #[test]
+    fn places_are_limited_and_come_free() {
+        let places = Arc::new(Places::default());
+        let mut taken: Vec<Place> = (0..MAX_CONNECTIONS).map(|_| Places::take(&places)).collect();
+        let (tell, told) = std::sync::mpsc::channel();
+        let waiting = thread::spawn({
+            let places = Arc::clone(&places);
+            move || {
+                let place = Places::take(&places);
+                tell.send(()).unwrap();
+                drop(place);
+            }
+        });
+        assert!(told.recv_timeout(Duration::from_millis(50)).is_err(), "one more than there are");
+        taken.pop();
+        told.recv().unwrap();
+        waiting.join().unwrap();
+        drop(taken);
+        assert_eq!(*places.taken.lock().unwrap(), 0);
     }
 
     #[test]

@@ -32,7 +32,7 @@ pub fn run(args: &View, ui: &Ui) -> anyhow::Result<()> {
     if !args.no_open && open(&url).is_err() {
         ui.warn(&url, "no browser could be started, please open it by hand");
     }
-    http::serve(&listener, move |request| answer(request, &model, port)).context("the server")
+    http::serve(&listener, move |request| answer(request, &model, port))
 }
 
 /// The whole site: these names and no others, whatever is on the disk.

@@ -10,7 +10,9 @@ use lwc::mesh::Semantic;
 use lwc::metrics::{CompareOptions, compare};
 use lwc::{DecodeOptions, Decoder, EncodeOptions, Limits, StreamInfo, TriMesh};
 use serde_json::{Value, json};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread;
 
 /// Surface samples for the quality of a pass: enough for a tenth of a decibel.
 const SAMPLES: usize = 20_000;
@@ -25,7 +27,7 @@ pub struct Model {
     colours: OnceLock<Vec<u8>>,
     /// Decibels of each pass, as far as they are known.
     quality: Arc<Mutex<Vec<Option<f64>>>>,
-    started: OnceLock<()>,
+    is_measured: AtomicBool,
 }
 
 impl Model {
@@ -53,7 +55,7 @@ impl Model {
             finest: OnceLock::new(),
             colours: OnceLock::new(),
             quality: Arc::default(),
-            started: OnceLock::new(),
+            is_measured: AtomicBool::new(false),
         })
     }
 
@@ -78,10 +80,12 @@ impl Model {
 
     /// Decibels of the passes, `null` where they are not known yet; measuring begins with the first call.
     pub fn quality(&self) -> Value {
-        self.started.get_or_init(|| {
+        if !self.is_measured.swap(true, Ordering::Relaxed) {
             let (bytes, quality) = (self.bytes(), Arc::clone(&self.quality));
-            std::thread::spawn(move || measure(&bytes, &quality));
-        });
+            let measuring = thread::Builder::new().spawn(move || measure(&bytes, &quality));
+            // Where threads are short the next call tries again.
+            self.is_measured.store(measuring.is_ok(), Ordering::Relaxed);
+        }
         let known = self.quality.lock().unwrap_or_else(PoisonError::into_inner);
         json!({ "db": *known })
     }
@@ -107,7 +111,7 @@ fn has_assets(info: &StreamInfo) -> bool {
 }
 
 fn encode(args: &View, ui: &Ui) -> anyhow::Result<Vec<u8>> {
-    let file = read_mesh(&args.input, ui)?;
+    let file = read_mesh(&args.input, &args.reading, ui)?;
     let mut options = EncodeOptions::default();
     options.descriptor = args.scale.descriptor;
     options.window = args.scale.window.window();

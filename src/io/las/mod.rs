@@ -5,6 +5,7 @@
 //! other one remains.
 
 mod points;
+mod quiet;
 mod thin;
 
 use super::{MeshFile, Place, ReadError, builder::MeshBuilder};

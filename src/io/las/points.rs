@@ -4,11 +4,12 @@
 //! believes the lengths in a header before it reads, and a file of a few hundred bytes then asks for all
 //! memory there is; what `laz` would believe is checked before it gets to see it.
 
+use super::quiet::without_panic;
 use crate::io::{Place, ReadError};
 use laz::{LasZipDecompressor, LazItemType, LazVlr};
 use std::{
     io::{Cursor, Seek, SeekFrom},
-    panic::{AssertUnwindSafe, catch_unwind},
+    ops::Range,
 };
 
 /// How many points there may be for each byte of a compressed file, and in any file. Scans have a quarter.
@@ -56,8 +57,10 @@ struct Compression {
     record: LazVlr,
 }
 
-/// All points in one chunk, without a table of chunks.
+/// All points in one chunk, without a table of chunks: LASzip before 2011.
 const POINT_WISE: u16 = 1;
+/// Where the record has the points of a chunk, which mean nothing to [`POINT_WISE`].
+const CHUNK_SIZE: Range<usize> = 12..16;
 /// The fields of a chunk one after the other.
 const LAYERED: u16 = 3;
 
@@ -193,13 +196,24 @@ fn laz_record(fields: &Fields, start: usize, end: usize) -> Result<Option<Compre
         let is_ours =
             fields.bytes::<16>(at + 2)?.starts_with(b"laszip encoded") && fields.u16(at + 18)? == 22204;
         if let (Some(data), true) = (data, is_ours) {
-            let code = Fields(data).u16(0)?;
-            let record = LazVlr::from_buffer(data).map_err(|error| damaged(at, &error.to_string()))?;
-            return Ok(Some(Compression { code, record }));
+            return compression(data).map(Some).map_err(|cause| damaged(at, &cause));
         }
         at += HEAD_BYTES + length;
     }
     Ok(None)
+}
+
+/// Reads the record of the compressor.
+fn compression(data: &[u8]) -> Result<Compression, String> {
+    let code = Fields(data).u16(0).map_err(|error| error.to_string())?;
+    let mut data = data.to_vec();
+    if let (POINT_WISE, Some(chunk_size)) = (code, data.get_mut(CHUNK_SIZE)) {
+        // LASzip before 2011 leaves any number here. The crate takes 0 and the largest for chunks of several sizes,
+        // and then panics for want of their table.
+        chunk_size.copy_from_slice(&1u32.to_le_bytes());
+    }
+    let record = without_panic(|| LazVlr::from_buffer(&data).map_err(|error| error.to_string()))?;
+    Ok(Compression { code, record })
 }
 
 fn damaged(at: usize, cause: &str) -> ReadError {
@@ -230,8 +244,7 @@ fn unpack(
     let mut num_left = num_points.ok_or_else(too_large)?;
     let mut source = Cursor::new(bytes);
     source.seek(SeekFrom::Start(header.data_offset as u64))?;
-    // The crate was not written for hostile bytes, and panics on some.
-    let unpacked = catch_unwind(AssertUnwindSafe(|| {
+    without_panic(|| {
         let mut unpacker =
             LasZipDecompressor::new(source, laz.record.clone()).map_err(|error| error.to_string())?;
         let mut piece = vec![0; (PIECE_BYTES / header.record_bytes).max(1) * header.record_bytes];
@@ -243,10 +256,8 @@ fn unpack(
             num_left -= num_bytes / header.record_bytes;
         }
         Ok(())
-    }));
-    unpacked
-        .unwrap_or_else(|_| Err("the decoder gave up".to_owned()))
-        .map_err(|cause| damaged(header.data_offset, &cause))
+    })
+    .map_err(|cause| damaged(header.data_offset, &cause))
 }
 
 /// Checks every length that `laz` would allocate for.

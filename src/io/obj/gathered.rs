@@ -1,12 +1,8 @@
 //! What vertices, faces and their corners have besides positions.
 
-use super::statements::{Statement, Statements};
+use super::{references::References, statements::Statement};
 use crate::{
-    io::{
-        Place, ReadError, ReadReport,
-        builder::fan,
-        text::{parse_number, quoted},
-    },
+    io::{Place, ReadError, ReadReport, builder::fan, text::parse_number},
     mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Values},
 };
 use std::collections::HashMap;
@@ -33,8 +29,8 @@ struct Table {
     values: Vec<[f64; 3]>,
     num_components: usize,
     rows: Rows,
-    /// The largest index from 1 that any corner has: values may follow their use.
-    highest: u64,
+    /// Values may follow their use.
+    references: References,
 }
 
 impl Table {
@@ -60,19 +56,13 @@ impl Table {
     }
 
     /// Notes what a corner has between its slashes.
-    fn refer(&mut self, corner: usize, index: &[u8]) -> Result<(), &'static str> {
-        if index.is_empty() {
+    fn refer(&mut self, corner: usize, word: &[u8], line: usize) -> Result<(), &'static str> {
+        if word.is_empty() {
             return Ok(());
         }
-        let index = std::str::from_utf8(index).ok().and_then(|index| index.parse::<i64>().ok());
-        let index = index.ok_or("an index is not a whole number")?;
-        let from_1 = if index < 0 { self.values.len() as i64 + 1 + index } else { index };
-        if from_1 <= 0 {
-            return Err("there is no such texture coordinate or normal");
-        }
-        self.highest = self.highest.max(from_1 as u64);
-        // Beyond 32 bits it does not exist, which is found at the end.
-        self.rows.set(corner, u32::try_from(from_1 - 1).unwrap_or(NO_ROW));
+        let row = self.references.resolve(word, self.values.len(), line);
+        let row = row.ok_or("an index is not a whole number")?;
+        self.rows.set(corner, row.ok_or("there is no such texture coordinate or normal")?);
         Ok(())
     }
 
@@ -163,11 +153,11 @@ impl Gathered {
     }
 
     /// Takes the corners of an `f` statement.
-    pub fn face<'a>(&mut self, corners: impl Iterator<Item = &'a [u8]>) -> Result<(), &'static str> {
-        for corner in corners {
+    pub fn face(&mut self, statement: &Statement) -> Result<(), &'static str> {
+        for corner in statement.words().skip(1) {
             let mut indices = corner.split(|&byte| byte == b'/').skip(1);
-            self.texture.refer(self.num_corners, indices.next().unwrap_or_default())?;
-            self.normals.refer(self.num_corners, indices.next().unwrap_or_default())?;
+            self.texture.refer(self.num_corners, indices.next().unwrap_or_default(), statement.line)?;
+            self.normals.refer(self.num_corners, indices.next().unwrap_or_default(), statement.line)?;
             if indices.next().is_some() {
                 return Err("a corner of more than three indices");
             }
@@ -197,28 +187,18 @@ impl Gathered {
     }
 
     /// Checks at the end that the values which corners refer to exist.
-    pub fn check_references(&self, bytes: &[u8]) -> Result<(), ReadError> {
+    pub fn check_references(&self) -> Result<(), ReadError> {
         if self.num_corners >= NO_ROW as usize {
             return Err(ReadError::TooLarge { message: format!("{} corners", self.num_corners) });
         }
-        for (k, what, table) in [(1, "texture coordinate", &self.texture), (2, "normal", &self.normals)] {
+        for (what, table) in [("texture coordinate", &self.texture), ("normal", &self.normals)] {
             let num_values = table.values.len();
             if num_values >= NO_ROW as usize {
                 return Err(ReadError::TooLarge { message: format!("{num_values} values of one kind") });
             }
-            if table.highest <= num_values as u64 {
-                continue;
-            }
-            let is_beyond = |corner: &&[u8]| {
-                let index = corner.split(|&byte| byte == b'/').nth(k).unwrap_or_default();
-                let index = std::str::from_utf8(index).ok().and_then(|index| index.parse::<u64>().ok());
-                index.is_some_and(|index| index > num_values as u64)
-            };
-            for statement in Statements::new(bytes).filter(|statement| statement.keyword() == b"f") {
-                if let Some(corner) = statement.words().skip(1).find(is_beyond) {
-                    let message = format!("there is no such {what}, of {num_values}: {}", quoted(corner));
-                    return Err(ReadError::syntax(Place::Line(statement.line), message));
-                }
+            if let Some((line, index)) = table.references.first_beyond(num_values) {
+                let message = format!("there is no such {what}, of {num_values}: `{index}`");
+                return Err(ReadError::syntax(Place::Line(line), message));
             }
         }
         Ok(())

@@ -1,17 +1,16 @@
 //! The statements of an OBJ file.
 
-use crate::io::text::{Lines, words};
-use std::borrow::Cow;
+use crate::io::{source::Source, text::words};
 
 /// One statement: a line, with those that continue it.
 pub(super) struct Statement<'a> {
     pub line: usize,
-    pub text: Cow<'a, [u8]>,
+    pub text: &'a [u8],
 }
 
 impl Statement<'_> {
     pub fn words(&self) -> impl Iterator<Item = &[u8]> {
-        words(&self.text)
+        words(self.text)
     }
 
     pub fn keyword(&self) -> &[u8] {
@@ -27,37 +26,39 @@ impl Statement<'_> {
 }
 
 /// The statements of a file without comments. A backslash at the end of a line continues it.
-pub(super) struct Statements<'a> {
-    lines: Lines<'a>,
+pub(super) struct Statements<'s, 'a> {
+    source: &'s mut Source<'a>,
+    text: Vec<u8>,
 }
 
-impl<'a> Statements<'a> {
-    pub fn new(bytes: &'a [u8]) -> Self {
+impl<'s, 'a> Statements<'s, 'a> {
+    pub fn new(source: &'s mut Source<'a>) -> Self {
         let byte_order_mark = b"\xef\xbb\xbf";
-        Self { lines: Lines::new(bytes.strip_prefix(byte_order_mark).unwrap_or(bytes)) }
+        if source.peek(byte_order_mark.len()) == byte_order_mark {
+            source.skip(byte_order_mark.len() as u64);
+        }
+        Self { source, text: Vec::new() }
+    }
+
+    pub fn next(&mut self) -> Option<Statement<'_>> {
+        self.text.clear();
+        self.source.skip_empty_lines();
+        let first = self.source.line()?;
+        let line = first.number;
+        let mut is_continued = append(&mut self.text, first.text);
+        while is_continued && let Some(next) = self.source.line() {
+            self.text.push(b' ');
+            is_continued = append(&mut self.text, next.text);
+        }
+        Some(Statement { line, text: &self.text })
     }
 }
 
-impl<'a> Iterator for Statements<'a> {
-    type Item = Statement<'a>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let (line, first) = self.lines.next()?;
-        // A backslash in a comment is the end of a path more often than a continuation.
-        let without_comment = first.split(|&b| b == b'#').next().unwrap_or_default();
-        let Some(head) = without_comment.strip_suffix(b"\\") else {
-            return Some(Statement { line, text: Cow::Borrowed(without_comment) });
-        };
-        let mut text = head.to_vec();
-        for (_, next) in self.lines.by_ref() {
-            let next = next.split(|&b| b == b'#').next().unwrap_or_default();
-            let continued = next.strip_suffix(b"\\");
-            text.push(b' ');
-            text.extend_from_slice(continued.unwrap_or(next));
-            if continued.is_none() {
-                break;
-            }
-        }
-        Some(Statement { line, text: Cow::Owned(text) })
-    }
+/// Adds a line to a statement, and tells whether another one follows.
+fn append(text: &mut Vec<u8>, line: &[u8]) -> bool {
+    // A backslash in a comment is the end of a path more often than a continuation.
+    let without_comment = line.split(|&b| b == b'#').next().unwrap_or_default();
+    let continued = without_comment.strip_suffix(b"\\");
+    text.extend_from_slice(continued.unwrap_or(without_comment));
+    continued.is_some()
 }

@@ -4,7 +4,8 @@ use super::body::Body;
 use crate::{
     io::{
         Place, ReadError,
-        text::{Lines, quoted, words},
+        source::{Line, Source},
+        text::{quoted, words},
     },
     mesh::ScalarType,
 };
@@ -50,16 +51,14 @@ impl Header {
 }
 
 /// Reads the header; what follows it is the body.
-pub(super) fn read_header(bytes: &[u8]) -> Result<(Header, Body<'_>), ReadError> {
-    let mut lines = Lines::new(bytes);
-    match lines.next() {
-        Some((_, magic)) if magic.trim_ascii_end() == b"ply" => {}
+pub(super) fn read_header<'s, 'a>(source: &'s mut Source<'a>) -> Result<(Header, Body<'s, 'a>), ReadError> {
+    match source.line() {
+        Some(magic) if magic.text.trim_ascii_end() == b"ply" => {}
         _ => return Err(ReadError::syntax(Place::Line(1), "not a PLY file: it does not begin with `ply`")),
     }
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
-    while let Some((number, line)) = lines.next() {
-        let is_cut = lines.num_left() == 0 && !bytes.ends_with(b"\n") && !bytes.ends_with(b"\r");
+    while let Some(Line { number, text: line, is_cut }) = source.line() {
         if is_cut && line != b"end_header" {
             break;
         }
@@ -86,12 +85,12 @@ pub(super) fn read_header(bytes: &[u8]) -> Result<(Header, Body<'_>), ReadError>
             [b"end_header"] => {
                 let encoding =
                     encoding.ok_or_else(|| ReadError::syntax(place, "the header names no format"))?;
-                return Ok((Header { elements }, Body::new(encoding, bytes, lines)));
+                return Ok((Header { elements }, Body::new(encoding, source)));
             }
             _ => return Err(bad("not a line of a PLY header")),
         }
     }
-    Err(ReadError::syntax(Place::Line(lines.number()), "the file ends in the header"))
+    Err(ReadError::syntax(Place::Line(source.num_lines()), "the file ends in the header"))
 }
 
 fn parse_encoding(name: &[u8], version: &[u8], place: Place) -> Result<Encoding, ReadError> {

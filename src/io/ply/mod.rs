@@ -15,17 +15,17 @@ mod write;
 
 pub(super) use write::write;
 
-use super::{MeshFile, ReadError, builder::MeshBuilder, builder::fan};
+use super::{MeshFile, ReadError, builder::MeshBuilder, builder::fan, source::Source};
 use crate::mesh::{Attribute, Domain, NO_ROW, Semantic, Values};
 use body::{Body, Fault};
 use columns::attributes_of;
 use header::{Element, Property, read_header};
 
 /// Reads a PLY file. Elements other than `vertex`, `face` and `tristrips` are skipped.
-pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
-    let (header, mut body) = read_header(bytes)?;
+pub(super) fn read(source: &mut Source) -> Result<MeshFile, ReadError> {
+    let (header, mut body) = read_header(source)?;
     let num_vertices = header.num_vertices()?;
-    let mut builder = MeshBuilder::for_file(bytes.len());
+    let mut builder = MeshBuilder::default();
     let mut is_first = true;
     for element in &header.elements {
         match element.name.as_str() {
@@ -42,6 +42,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, ReadError> {
             }
         }
     }
+    builder.num_bytes = body.offset();
     builder.finish()
 }
 
@@ -141,6 +142,7 @@ fn read_faces(
     ignore_others(element, builder, |k| k == corners_at || wedge_at == Some(k) || owners[k].is_some());
 
     // Triangles that came before have no row.
+    builder.num_bytes = body.offset();
     builder.check_rows(attributes.len(), builder.triangles.len())?;
     let mut faces = Faces {
         attributes,
@@ -189,6 +191,7 @@ fn read_faces(
         builder.push_polygon(&corners);
         faces.end_polygon(corners.len(), &wedge_bits, builder)?;
     }
+    builder.num_bytes = body.offset();
     builder.check_rows(faces.attributes.len(), builder.triangles.len())?;
     faces.finish(builder);
     Ok(())

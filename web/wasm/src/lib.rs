@@ -1,7 +1,8 @@
 //! The decoder behind a handful of functions that take and return numbers.
 //!
 //! `web/src/decoder.ts` is the only caller. Decoders are named by numbers, not by pointers, so a wrong
-//! handle is a trap and never a stray access; the one thing left to the caller is to write at most as
+//! handle is a trap and never a stray access. A trap, after which nothing of its call runs,
+//! takes its decoder and leaves the others as they were. The one thing left to the caller is to write at most as
 //! many bytes as it asked [`input`] for. There is no `unsafe` block; the attribute that exports a name
 //! needs the word because two crates could export the same one, and nothing else is linked here.
 
@@ -13,18 +14,26 @@ mod shading;
 mod slot;
 
 use slot::Slot;
-use std::cell::RefCell;
+use std::cell::{RefCell, RefMut};
+
+/// A place for a decoder, which is used again when it is free. One whose decoder trapped stays borrowed for ever.
+type Place = RefCell<Option<Slot>>;
 
 thread_local! {
     // A WebAssembly instance has one thread.
-    static SLOTS: RefCell<Vec<Option<Slot>>> = const { RefCell::new(Vec::new()) };
+    static PLACES: RefCell<Vec<&'static Place>> = const { RefCell::new(Vec::new()) };
 }
 
 fn with<R>(handle: u32, then: impl FnOnce(&mut Slot) -> R) -> R {
-    SLOTS.with_borrow_mut(|slots| match slots.get_mut(handle as usize) {
-        Some(Some(slot)) => then(slot),
-        _ => panic!("no such decoder"),
-    })
+    then(&mut slot(handle))
+}
+
+#[inline(never)]
+fn slot(handle: u32) -> RefMut<'static, Slot> {
+    // The list is not borrowed any more when this or what follows traps.
+    let place = PLACES.with_borrow(|places| places.get(handle as usize).copied());
+    let slot = place.and_then(|place| RefMut::filter_map(place.try_borrow_mut().ok()?, Option::as_mut).ok());
+    slot.expect("no such decoder")
 }
 
 /// Makes a decoder. `level`: the last level wanted, `u32::MAX` for all. Positions are given relative to
@@ -38,20 +47,24 @@ pub extern "C" fn create(level: u32, max_memory: f64, max_vertices: u32, relativ
         options = options.level(level);
     }
     let slot = Slot::new(options, relative != 0, shade != 0);
-    SLOTS.with_borrow_mut(|slots| {
-        let free = slots.iter().position(Option::is_none).unwrap_or(slots.len());
-        if free == slots.len() {
-            slots.push(None);
+    PLACES.with_borrow_mut(|places| {
+        let is_free = |place: &&Place| place.try_borrow().is_ok_and(|slot| slot.is_none());
+        let free = places.iter().position(is_free).unwrap_or(places.len());
+        if free == places.len() {
+            places.push(Box::leak(Box::default()));
         }
-        slots[free] = Some(slot);
+        places[free].replace(Some(slot));
         free as u32
     })
 }
 
-/// Forgets a decoder and frees its memory.
+/// Forgets a decoder and frees its memory, unless a trap has taken it.
 #[unsafe(no_mangle)]
 pub extern "C" fn destroy(handle: u32) {
-    SLOTS.with_borrow_mut(|slots| slots[handle as usize] = None);
+    let place = PLACES.with_borrow(|places| places.get(handle as usize).copied());
+    if let Some(mut slot) = place.and_then(|place| place.try_borrow_mut().ok()) {
+        *slot = None;
+    }
 }
 
 /// Where the next `length` bytes of the stream are to be written.

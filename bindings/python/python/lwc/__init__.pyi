@@ -76,6 +76,7 @@ def decode(
     compensate: bool = True,
     max_memory: int | None = None,
     max_vertices: int | None = None,
+    max_levels: int | None = None,
 ) -> Mesh: ...
 def decode_scene(
     stream: bytes,
@@ -84,6 +85,7 @@ def decode_scene(
     compensate: bool = True,
     max_memory: int | None = None,
     max_vertices: int | None = None,
+    max_levels: int | None = None,
 ) -> Scene: ...
 def info(stream: bytes) -> Info | None: ...
 
@@ -106,6 +108,7 @@ class Decoder:
         compensate: bool = True,
         max_memory: int | None = None,
         max_vertices: int | None = None,
+        max_levels: int | None = None,
     ) -> None: ...
     def push(self, piece: bytes) -> list[Update]: ...
     def mesh(self, *, attributes: bool = True) -> Mesh | None: ...

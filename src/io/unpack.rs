@@ -1,0 +1,129 @@
+//! Files as they are read: unpacked if they are compressed, and never more than was allowed.
+
+use super::{Format, MAX_FILE_BYTES, ReadError, format_and_compression, source::Source};
+use std::{
+    fs::File,
+    io::{self, BufReader, Read},
+    path::Path,
+};
+
+/// How much a file may unpack to; how files are read in [`crate::io`].
+///
+/// ```no_run
+/// let file = lwc::io::ReadOptions::default().any_ratio().read("all-zero.ply.zst")?;
+/// # Ok::<(), lwc::io::ReadError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ReadOptions {
+    /// How many bytes a `.zst` file may unpack to for each of its own, beyond [`ReadOptions::free_bytes`].
+    /// Default: 1000. Meshes have 2 to 30, and zstd goes up to 32,768.
+    pub max_ratio: u64,
+    /// Bytes that any `.zst` file may unpack to. Default: 256 MiB.
+    pub free_bytes: u64,
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self { max_ratio: 1000, free_bytes: 256 << 20 }
+    }
+}
+
+impl ReadOptions {
+    /// Lifts the limit on how much a small file may unpack to. [`MAX_FILE_BYTES`] holds.
+    #[must_use]
+    pub fn any_ratio(mut self) -> Self {
+        self.max_ratio = u64::MAX;
+        self
+    }
+
+    /// The (unpacked) bytes of a file, and what its ending says they are.
+    pub(super) fn open(&self, path: &Path) -> Result<(Source<'static>, Format), ReadError> {
+        let (format, is_compressed) = format_and_compression(path).ok_or(ReadError::UnknownEnding)?;
+        let file = File::open(path)?;
+        if is_compressed {
+            return Ok((Source::new(Limited::new(Unpacker::new(file, self)?), None), format));
+        }
+        // What is no regular file, such as a pipe, does not know how long it is.
+        let metadata = file.metadata()?;
+        let num_bytes = metadata.is_file().then_some(metadata.len());
+        if num_bytes.is_some_and(|num_bytes| num_bytes > MAX_FILE_BYTES) {
+            return Err(too_large());
+        }
+        Ok((Source::new(Limited::new(file), num_bytes), format))
+    }
+}
+
+fn too_large() -> ReadError {
+    ReadError::TooLarge { message: format!("more than {MAX_FILE_BYTES} bytes") }
+}
+
+/// Reads no more than [`MAX_FILE_BYTES`].
+struct Limited<R> {
+    reader: R,
+    num_left: u64,
+}
+
+impl<R> Limited<R> {
+    fn new(reader: R) -> Self {
+        Self { reader, num_left: MAX_FILE_BYTES }
+    }
+}
+
+impl<R: Read> Read for Limited<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let num_read = self.reader.read(buffer)?;
+        self.num_left =
+            self.num_left.checked_sub(num_read as u64).ok_or_else(|| io::Error::other(too_large()))?;
+        Ok(num_read)
+    }
+}
+
+/// Counts what it reads.
+struct Counter {
+    file: File,
+    num_bytes: u64,
+}
+
+impl Read for Counter {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let num_read = self.file.read(buffer)?;
+        self.num_bytes += num_read as u64;
+        Ok(num_read)
+    }
+}
+
+/// Unpacks a file while that is in proportion to its size.
+struct Unpacker {
+    decoder: zstd::Decoder<'static, BufReader<Counter>>,
+    num_unpacked: u64,
+    options: ReadOptions,
+}
+
+impl Unpacker {
+    fn new(file: File, options: &ReadOptions) -> io::Result<Self> {
+        let decoder = zstd::Decoder::new(Counter { file, num_bytes: 0 })?;
+        Ok(Self { decoder, num_unpacked: 0, options: options.clone() })
+    }
+
+    /// # Errors
+    /// If more has come out than may.
+    fn check(&self) -> Result<(), ReadError> {
+        let packed = self.decoder.get_ref().get_ref().num_bytes;
+        let most = packed.saturating_mul(self.options.max_ratio).max(self.options.free_bytes);
+        if self.num_unpacked <= most { Ok(()) } else { Err(ReadError::Ratio { packed, most }) }
+    }
+}
+
+impl Read for Unpacker {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let unpacked = self.decoder.read(buffer);
+        let num_read = unpacked.map_err(|error| match error.kind() {
+            io::ErrorKind::Interrupted => error,
+            _ => io::Error::other(ReadError::Zstd(error)),
+        })?;
+        self.num_unpacked += num_read as u64;
+        self.check().map_err(io::Error::other)?;
+        Ok(num_read)
+    }
+}
