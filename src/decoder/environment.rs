@@ -8,6 +8,10 @@ use std::hint::black_box;
 /// # Errors
 /// What is done otherwise: numbers are rounded another way, or subnormal ones become zero.
 pub(crate) fn check() -> Result<(), &'static str> {
+    // WebAssembly knows no other way.
+    if cfg!(target_family = "wasm") {
+        return Ok(());
+    }
     departure().map_or(Ok(()), Err)
 }
 

@@ -12,7 +12,7 @@
 
 interface Exports {
   memory: WebAssembly.Memory;
-  create(level: number, maxMemory: number, maxVertices: number, relative: number, shade: number): number;
+  create(level: number, maxMemory: number, maxVertices: number, maxWork: number, relative: number, shade: number): number;
   destroy(handle: number): void;
   input(handle: number, length: number): number;
   feed(handle: number): number;
@@ -205,6 +205,8 @@ export interface DecodeOptions {
   maxMemory?: number;
   /** Most vertices. Default 2²⁵. */
   maxVertices?: number;
+  /** Most units of work, each about a tenth of a microsecond. Default: in proportion to the bytes of the stream. */
+  maxWork?: number;
   /** Give positions relative to `info.origin`: keeps precision where coordinates are large. */
   relative?: boolean;
   /** Compute vertex normals and the expected error after each pass. */
@@ -230,6 +232,7 @@ export class Decoder {
       options.level ?? ALL,
       options.maxMemory ?? 2 ** 30,
       options.maxVertices ?? 2 ** 25,
+      options.maxWork ?? NaN,
       options.relative ? 1 : 0,
       options.shade ? 1 : 0,
     );

@@ -167,6 +167,7 @@ test('errors have the kinds of the library and keep the last good mesh', () => {
   assert.throws(() => decode(wasm, new TextEncoder().encode('solid cube')), kind('NotAStream'));
   assert.throws(() => decode(wasm, read('torus.lwc').subarray(0, 20)), kind('NoMesh'));
   assert.throws(() => decode(wasm, read('torus.lwc'), { maxVertices: 10 }), kind('Limit'));
+  assert.throws(() => decode(wasm, read('torus.lwc'), { maxWork: 100 }), kind('Limit'));
 
   const bytes = read('torus.lwc');
   bytes[bytes.length - 1] ^= 1;

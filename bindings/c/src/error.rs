@@ -48,6 +48,9 @@ pub enum Status {
     /// An array cannot be one: its address is not a multiple of its type's alignment, or it has more bytes than memory
     /// can.
     Array = 18,
+    /// The calling thread rounds floating-point numbers another way than to nearest, or takes subnormal ones for zero:
+    /// its mode must be the default one. Game engines, audio libraries and code built with fast arithmetic change it.
+    FloatingPoint = 19,
 }
 
 thread_local! {
@@ -84,6 +87,7 @@ pub fn decode(error: DecodeError) -> Status {
         DecodeError::Checksum { .. } => Status::Checksum,
         DecodeError::Malformed { .. } => Status::Malformed,
         DecodeError::Limit { .. } => Status::Limit,
+        DecodeError::FloatingPoint(_) => Status::FloatingPoint,
         DecodeError::Failed => Status::Failed,
         DecodeError::NoMesh => Status::NoMesh,
         _ => Status::Internal,
@@ -98,6 +102,7 @@ pub fn encode(error: EncodeError) -> Status {
         EncodeError::TooLarge(_) => Status::TooLarge,
         EncodeError::BoundingBox => Status::BoundingBox,
         EncodeError::Attribute { .. } => Status::Attribute,
+        EncodeError::FloatingPoint(_) => Status::FloatingPoint,
         _ => Status::Internal,
     };
     tell(status, &error.to_string())

@@ -17,6 +17,8 @@ pub struct DecodeOptions {
     pub max_vertices: u32,
     /// Most levels.
     pub max_levels: u32,
+    /// Most units of work, each about a tenth of a microsecond; 0: in proportion to the bytes of the stream.
+    pub max_work: u64,
     /// Leave the vertices of coarse levels where they are in the finest mesh.
     pub uncompensated: bool,
 }
@@ -68,8 +70,9 @@ pub struct EncodeOptions {
 /// All levels, the limits of the Rust library.
 #[unsafe(no_mangle)]
 pub extern "C" fn lwc_decode_options_default() -> DecodeOptions {
-    let Limits { max_memory, max_vertices, max_levels } = Limits::default();
-    DecodeOptions { level: -1, max_memory, max_vertices, max_levels, uncompensated: false }
+    let Limits { max_memory, max_vertices, max_levels, max_work } = Limits::default();
+    let max_work = max_work.unwrap_or(0);
+    DecodeOptions { level: -1, max_memory, max_vertices, max_levels, max_work, uncompensated: false }
 }
 
 /// The defaults of the Rust library.
@@ -100,10 +103,13 @@ pub extern "C" fn lwc_encode_options_default() -> EncodeOptions {
 }
 
 pub fn decode(options: Option<&DecodeOptions>) -> lwc::DecodeOptions {
-    let Some(&DecodeOptions { level, max_memory, max_vertices, max_levels, uncompensated }) = options else {
+    let Some(&DecodeOptions { level, max_memory, max_vertices, max_levels, max_work, uncompensated }) =
+        options
+    else {
         return lwc::DecodeOptions::new();
     };
-    let limits = Limits { max_memory, max_vertices, max_levels };
+    let max_work = (max_work != 0).then_some(max_work);
+    let limits = Limits { max_memory, max_vertices, max_levels, max_work };
     let options = lwc::DecodeOptions::new().limits(limits).compensate(!uncompensated);
     u32::try_from(level).map_or(options, |level| options.level(level))
 }

@@ -22,6 +22,7 @@ pub fn decode_error(py: Python<'_>, error: lwc::DecodeError) -> PyErr {
         E::Checksum { .. } => "Checksum",
         E::Malformed { .. } => "Malformed",
         E::Limit { .. } => "Limit",
+        E::FloatingPoint(_) => "FloatingPoint",
         E::Failed => "Failed",
         E::NoMesh => "NoMesh",
         _ => "Other",
@@ -37,6 +38,7 @@ pub fn encode_error(py: Python<'_>, error: lwc::EncodeError) -> PyErr {
         E::TooLarge(_) => "TooLarge",
         E::BoundingBox => "BoundingBox",
         E::Attribute { .. } => "Attribute",
+        E::FloatingPoint(_) => "FloatingPoint",
         _ => "Other",
     };
     with_kind(py, EncodeError::new_err(error.to_string()), kind)
@@ -51,6 +53,10 @@ pub fn mesh_error(py: Python<'_>, error: lwc::MeshError) -> PyErr {
         _ => "Other",
     };
     with_kind(py, EncodeError::new_err(error.to_string()), kind)
+}
+
+pub fn scene_error(py: Python<'_>, error: lwc::io::ReadError) -> PyErr {
+    with_kind(py, DecodeError::new_err(error.to_string()), "Limit")
 }
 
 pub fn option_error(py: Python<'_>, option: &str, name: &str) -> PyErr {

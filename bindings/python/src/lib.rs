@@ -77,7 +77,8 @@ fn tri_mesh<'py>(
 
 /// Decodes a stream, or the beginning of one. Returns a lwc.Mesh.
 #[pyfunction]
-#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None))]
+#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None, max_work=None))]
+#[allow(clippy::too_many_arguments)] // Each is a keyword of Python.
 fn decode<'py>(
     py: Python<'py>,
     stream: &[u8],
@@ -86,16 +87,22 @@ fn decode<'py>(
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
     max_levels: Option<u32>,
+    max_work: Option<u64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     attributes::mesh(
         py,
-        decoded(py, stream, options::decode(level, compensate, max_memory, max_vertices, max_levels))?,
+        decoded(
+            py,
+            stream,
+            options::decode(level, compensate, max_memory, max_vertices, max_levels, max_work),
+        )?,
     )
 }
 
 /// Decodes a stream, or the beginning of one, as a lwc.Scene: a mesh alone is a scene of one instance.
 #[pyfunction]
-#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None))]
+#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None, max_work=None))]
+#[allow(clippy::too_many_arguments)] // Each is a keyword of Python.
 fn decode_scene<'py>(
     py: Python<'py>,
     stream: &[u8],
@@ -104,10 +111,15 @@ fn decode_scene<'py>(
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
     max_levels: Option<u32>,
+    max_work: Option<u64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     scene::scene(
         py,
-        decoded(py, stream, options::decode(level, compensate, max_memory, max_vertices, max_levels))?,
+        decoded(
+            py,
+            stream,
+            options::decode(level, compensate, max_memory, max_vertices, max_levels, max_work),
+        )?,
     )
 }
 
@@ -221,15 +233,16 @@ struct Decoder(Box<lwc::Decoder>);
 #[pymethods]
 impl Decoder {
     #[new]
-    #[pyo3(signature = (*, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None))]
+    #[pyo3(signature = (*, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None, max_work=None))]
     fn new(
         level: Option<u32>,
         compensate: bool,
         max_memory: Option<u64>,
         max_vertices: Option<u32>,
         max_levels: Option<u32>,
+        max_work: Option<u64>,
     ) -> Self {
-        let options = options::decode(level, compensate, max_memory, max_vertices, max_levels);
+        let options = options::decode(level, compensate, max_memory, max_vertices, max_levels, max_work);
         Self(Box::new(lwc::Decoder::with_options(options)))
     }
 

@@ -61,12 +61,14 @@ pub fn decode(
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
     max_levels: Option<u32>,
+    max_work: Option<u64>,
 ) -> DecodeOptions {
     let default = Limits::default();
     let options = DecodeOptions::new().compensate(compensate).limits(Limits {
         max_memory: max_memory.unwrap_or(default.max_memory),
         max_vertices: max_vertices.unwrap_or(default.max_vertices),
         max_levels: max_levels.unwrap_or(default.max_levels),
+        max_work,
     });
     level.map_or(options, |level| options.level(level))
 }

@@ -1,6 +1,7 @@
 //! Scenes: `lwc.Scene` of Python from that of the library.
 
 use crate::attributes::{class, mesh};
+use crate::error::scene_error;
 use lwc::TriMesh;
 use lwc::io::Scene;
 use lwc::mesh::{Attributes, IDENTITY, Instance};
@@ -14,7 +15,7 @@ pub fn scene<'py>(
     (tri_mesh, mut attributes): (TriMesh, Attributes),
 ) -> PyResult<Bound<'py, PyAny>> {
     let unpacked = py.detach(|| Scene::unpack(&tri_mesh, &attributes));
-    let unpacked = unpacked.map_err(crate::error::read_error)?;
+    let unpacked = unpacked.map_err(|error| scene_error(py, error))?;
     let materials = attributes.gltf_materials.take().unwrap_or_default();
     let (meshes, instances): (Vec<_>, _) = match unpacked {
         Some(scene) => {

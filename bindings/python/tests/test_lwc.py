@@ -1,6 +1,8 @@
 """The package that is installed, against the golden streams and numpy."""
 
+import ctypes
 import os
+import platform
 import runpy
 import signal
 import sys
@@ -299,6 +301,40 @@ def test_levels_are_limited():
         with pytest.raises(lwc.DecodeError) as caught:
             decode(stream, max_levels=levels - 1)
         assert caught.value.kind == "Limit"
+
+
+def test_work_is_limited():
+    stream = lwc.encode(*grid(40))
+    for decode in [lwc.decode, lwc.decode_scene, lambda stream, **limits: lwc.Decoder(**limits).push(stream)]:
+        decode(stream, max_work=10**7)
+        with pytest.raises(lwc.DecodeError, match="work") as caught:
+            decode(stream, max_work=100)
+        assert caught.value.kind == "Limit"
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs glibc")
+def test_another_rounding_mode_is_no_damage():
+    """Libraries that are loaded may change it for the whole thread."""
+    stream = lwc.encode(*grid(9))
+    libm = ctypes.CDLL("libm.so.6")
+    nearest = libm.fegetround()
+    upwards = {"x86_64": 0x800, "i686": 0x800, "aarch64": 0x400000}.get(platform.machine())
+    if upwards is None:
+        pytest.skip("another processor")
+
+    def kind_of(call):
+        libm.fesetround(upwards)
+        try:
+            call()
+        except (lwc.DecodeError, lwc.EncodeError) as error:
+            return error.kind
+        finally:
+            libm.fesetround(nearest)
+
+    decoder = lwc.Decoder()
+    assert kind_of(lambda: lwc.decode(stream)) == "FloatingPoint"
+    assert kind_of(lambda: decoder.push(stream)) == "FloatingPoint"
+    assert lwc.decode(stream).faces.shape == (128, 3)
 
 
 def test_ctrl_c_ends_encode():

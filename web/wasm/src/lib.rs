@@ -38,10 +38,19 @@ fn slot(handle: u32) -> RefMut<'static, Slot> {
 
 /// Makes a decoder. `level`: the last level wanted, `u32::MAX` for all. Positions are given relative to
 /// the smallest corner of the grid if `relative` is not 0; normals and the expected error are computed
-/// if `shade` is not 0.
+/// if `shade` is not 0. `max_work` is not a number for the default.
 #[unsafe(no_mangle)]
-pub extern "C" fn create(level: u32, max_memory: f64, max_vertices: u32, relative: u32, shade: u32) -> u32 {
-    let limits = lwc::Limits { max_memory: max_memory as u64, max_vertices, ..lwc::Limits::default() };
+pub extern "C" fn create(
+    level: u32,
+    max_memory: f64,
+    max_vertices: u32,
+    max_work: f64,
+    relative: u32,
+    shade: u32,
+) -> u32 {
+    let max_work = (!max_work.is_nan()).then_some(max_work as u64);
+    let limits =
+        lwc::Limits { max_memory: max_memory as u64, max_vertices, max_work, ..lwc::Limits::default() };
     let mut options = lwc::DecodeOptions::new().limits(limits);
     if level != u32::MAX {
         options = options.level(level);

@@ -77,6 +77,7 @@ def decode(
     max_memory: int | None = None,
     max_vertices: int | None = None,
     max_levels: int | None = None,
+    max_work: int | None = None,
 ) -> Mesh: ...
 def decode_scene(
     stream: bytes,
@@ -86,6 +87,7 @@ def decode_scene(
     max_memory: int | None = None,
     max_vertices: int | None = None,
     max_levels: int | None = None,
+    max_work: int | None = None,
 ) -> Scene: ...
 def info(stream: bytes) -> Info | None: ...
 
@@ -109,6 +111,7 @@ class Decoder:
         max_memory: int | None = None,
         max_vertices: int | None = None,
         max_levels: int | None = None,
+        max_work: int | None = None,
     ) -> None: ...
     def push(self, piece: bytes) -> list[Update]: ...
     def mesh(self, *, attributes: bool = True) -> Mesh | None: ...
