@@ -284,3 +284,53 @@ fn arrays_that_cannot_be_are_refused() {
         assert!(mesh.is_null() && decoded.is_null());
     }
 }
+
+#[test]
+fn work_beyond_the_limit_has_its_status() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../format/golden/torus.lwc");
+    let bytes = std::fs::read(path).unwrap();
+    let decode = |max_work| unsafe {
+        let options = DecodeOptions { max_work, ..lwc_decode_options_default() };
+        let decoder = lwc_decoder_new(&options);
+        assert_eq!(lwc_decoder_feed(decoder, bytes.as_ptr(), bytes.len()), Status::Ok);
+        let status = lwc_decoder_step(decoder, null_mut());
+        lwc_decoder_free(decoder);
+        status
+    };
+    assert_eq!(lwc_decode_options_default().max_work, 0);
+    assert_eq!((decode(0), decode(1 << 40)), (Status::Ok, Status::Ok));
+    assert_eq!(decode(10), Status::Limit);
+    assert!(last_error().contains("work"), "{}", last_error());
+}
+
+/// What a host may have set for the whole thread: other rounding, subnormal numbers taken for zero.
+#[cfg(all(target_arch = "x86_64", not(miri)))]
+#[test]
+fn a_thread_that_computes_otherwise_is_told_so_and_streams_are_not_called_damaged() {
+    fn control() -> u32 {
+        let mut value = 0_u32;
+        unsafe { std::arch::asm!("stmxcsr [{}]", in(reg) &mut value) };
+        value
+    }
+    fn set_control(value: u32) {
+        unsafe { std::arch::asm!("ldmxcsr [{}]", in(reg) &value) };
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../format/golden/exact-values.lwc");
+    let bytes = std::fs::read(path).unwrap();
+    let decode = |bits| unsafe {
+        let decoder = lwc_decoder_new(null());
+        assert_eq!(lwc_decoder_feed(decoder, bytes.as_ptr(), bytes.len()), Status::Ok);
+        let usual = control();
+        set_control(usual | bits);
+        let status = lwc_decoder_step(decoder, null_mut());
+        set_control(usual);
+        lwc_decoder_free(decoder);
+        status
+    };
+    assert_eq!(decode(0), Status::Ok);
+    // Flush to zero, subnormals are zero, both; rounding down, up, towards zero.
+    for bits in [0x8000, 0x0040, 0x8040, 0x2000, 0x4000, 0x6000] {
+        assert_eq!(decode(bits), Status::FloatingPoint, "{bits:#x}");
+        assert!(last_error().contains("floating-point"), "{}", last_error());
+    }
+}
