@@ -2693,6 +2693,8 @@ def read_announced(payload):
         known = kind in "pdntag" or "A" <= kind <= "Z" or kind in [k for k, _ in trailing]
         require(not known and len(trailing) < 16, "the announced chunks")
         trailing.append((kind, reader.varint()))
+    stage = [{"i": 0, "x": 1, "v": 1, "o": 2}[kind] for kind, _ in trailing if kind in "ixvo"]
+    require(stage == sorted(stage), "the announced chunks")
     return glue, trailing
 
 
