@@ -167,8 +167,9 @@ impl Decoder {
     /// is seen of the mesh is that of the pass before.
     ///
     /// A unit is the work of an edge or a triangle, a fraction of a microsecond. The last thing done in a
-    /// call may be more than is left: a vertex with all its edges, or a copy of an array, which
-    /// counts one unit for 64 numbers. Only the links of a base mesh are not counted.
+    /// call may be more than is left: a vertex with all its edges, a copy of an array, which
+    /// counts one unit for 64 numbers, or a whole chunk of glue or behind the last pass. Only the links of a base mesh are
+    /// not counted.
     ///
     /// ```
     /// # fn run(mut decoder: lwc::Decoder, time_is_left: impl Fn() -> bool) -> Result<(), lwc::DecodeError> {

@@ -60,7 +60,7 @@ mod tests {
         assert_eq!(base.row.bytes, 4000);
         assert_eq!(split.payload.len(), split.row.bytes as usize);
         assert_eq!(split.payload[100..], vec![0; split.payload.len() - 100]);
-        let cost = 10 * 8000 + 5 * 8000 + 2 * (208_000 + 100_000);
+        let cost = 10 * 8000 + 5 * 8000 + 2 * (208_000 + 100_000) + 12 * 100_000;
         let earned = |bytes: u32| cost::FREE + cost::PER_BYTE * u64::from(bytes);
         assert!(earned(4000 + split.row.bytes) >= cost && earned(3999 + split.row.bytes) < cost);
         assert_eq!(u64::from(refinement.row.bytes - 9), (6 * 208_000_u64 - 9 * 128).div_ceil(128) - 1);
