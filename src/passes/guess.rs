@@ -386,12 +386,14 @@ struct Frame {
 impl Frame {
     #[inline(always)]
     fn new(slopes: Lanes, across: usize) -> Self {
-        let columns = std::array::from_fn(|axis| {
-            let mut column = Lanes::ZERO;
-            column.0[across] = slopes.0[axis];
-            column.0[axis] = 1.0;
-            column
-        });
+        // Entry by entry, in registers: LLVM 22 for the z10 takes stores to computed lanes apart into stack slots, and merges
+        // slots that still hold lanes.
+        let entry = |axis: usize, row: usize| match row {
+            _ if row == axis => 1.0,
+            _ if row == across => slopes.0[axis],
+            _ => 0.0,
+        };
+        let columns = std::array::from_fn(|axis| Lanes(std::array::from_fn(|row| entry(axis, row))));
         Self { columns }
     }
 
@@ -406,4 +408,31 @@ impl Frame {
 #[inline(always)]
 pub(crate) fn log_level(log: f32, per_octave: f32, count: usize) -> usize {
     index_below((log + 1.5) * per_octave, count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::hint::black_box;
+
+    /// A compiler once lost the slopes of a frame, where many points were sheared with it.
+    #[test]
+    fn a_frame_shears_every_point_alike() {
+        let points = [[1365.0, 682.5, -2047.5, 0.0], [1.0, 2.0, 3.0, 0.0], [5.0, 7.0, 11.0, 0.0]].map(Lanes);
+        for normal in [[4.0, 1.0, 2.0, 0.0], [1.0, 4.0, 2.0, 0.0], [1.0, 2.0, 4.0, 0.0]].map(Lanes) {
+            let axes = axis_order(black_box(normal));
+            let [first, second, across] = axes;
+            let slopes = slopes(normal, axes);
+            let frame = Frame::new(slopes, across);
+            assert_eq!(
+                (slopes.0[across], slopes.0[first], slopes.0[second]),
+                (0.0, normal.0[first] / 4.0, normal.0[second] / 4.0)
+            );
+            for point in black_box(points) {
+                let mut sheared = point;
+                sheared.0[across] += slopes.dot3(point);
+                assert_eq!(frame.of(point), sheared, "across axis {across}");
+            }
+        }
+    }
 }
