@@ -11,6 +11,7 @@ mod scale;
 mod schedule;
 mod scout;
 mod signatures;
+mod ties;
 mod trailing;
 mod values;
 mod write;
