@@ -10,6 +10,11 @@ use super::symmetric::Sym3;
 /// The scale of a descriptor: W(v) = {u : at most `rings` edges from v, and ‖u − v‖ ≤ `radius`} (eq. 1).
 ///
 /// A vertex counts even if the short path to it leaves the ball.
+///
+/// *Ours:* no path leads through a vertex with more than 256 neighbours, unless it is v itself, and a ring beyond the
+/// first that has more than 256 n vertices is left out with all after it. Otherwise the window of each vertex around
+/// a hub would be most of the mesh, and the time quadratic in the hub's neighbours. The scans and models that we
+/// know have neither.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// Topological radius n, in edges.
@@ -35,6 +40,12 @@ impl Window {
 
 /// Squares of distances may exceed r² by this part, so that rounding does not decide about ties.
 const RADIUS_SLACK: f64 = 1e-9;
+
+/// No path leads through a vertex with more groups of neighbours than this.
+const MOST_GROUPS: usize = 256 / GROUP;
+
+/// A ring of more vertices, times the rings of the window, is left out.
+const MOST_IN_RING: usize = 256;
 
 /// The arrays are padded with zeros to a multiple of this, for kernels that work on several vertices at once.
 pub(super) const LANES: usize = 4;
@@ -109,7 +120,8 @@ impl<'a> LocalWindow<'a> {
         self.keep_ball(v, reached);
     }
 
-    /// Fills the queue with the vertices at most `rings` edges from `v`; returns how many there are.
+    /// Fills the queue with the vertices at most `rings` edges from `v` that a path leads to; returns how many
+    /// there are.
     fn walk_rings(&mut self, v: usize) -> usize {
         self.stamp += 1;
         let stamp = self.stamp;
@@ -119,10 +131,18 @@ impl<'a> LocalWindow<'a> {
         self.queue[0] = v as u32;
         self.stamps[v] = stamp;
         let (mut begin, mut end) = (0, 1);
-        for _ in 0..self.rings {
+        let most_in_ring = MOST_IN_RING.saturating_mul(self.rings as usize);
+        for ring in 0..self.rings {
+            let most = if ring == 0 { usize::MAX } else { most_in_ring };
             let mut len = end;
             for i in begin..end {
+                if len - end > most {
+                    return end;
+                }
                 let row = self.surface.adjacency.of(self.queue[i] as usize);
+                if row.len() > MOST_GROUPS && i > 0 {
+                    continue;
+                }
                 for group in row {
                     if self.queue.len() < len + GROUP {
                         self.queue.resize(2 * (len + GROUP), 0);
@@ -138,7 +158,7 @@ impl<'a> LocalWindow<'a> {
                     len += added;
                 }
             }
-            if len == end {
+            if len == end || len - end > most {
                 break;
             }
             (begin, end) = (end, len);
@@ -218,5 +238,41 @@ impl<'a> LocalWindow<'a> {
         let mut covariance = Sym3 { xx, xy, xz, yy, yz, zz };
         covariance.add_outer(DVec3::new(x, y, z), -1.0 / self.len as f64);
         covariance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::readings::NormalWeights;
+    use super::*;
+    use crate::TriMesh;
+
+    /// Vertices of the window of each vertex, which the radius does not limit.
+    fn sizes(num_vertices: u32, triangles: Vec<[u32; 3]>, rings: u32) -> Vec<usize> {
+        let place = |v: u32| [f64::from(v), f64::from(v * v % 7), 0.0];
+        let mesh = TriMesh::new((0..num_vertices).map(place).collect(), triangles).unwrap();
+        let surface = Surface::new(&mesh, 1.0, NormalWeights::Area, true).unwrap();
+        map_windows(&surface, &Window { rings, radius: 1e9 }, &|_| (), |local| local.len())
+    }
+
+    fn fan(rim: u32) -> Vec<[u32; 3]> {
+        (0..rim).map(|i| [0, 1 + i, 1 + (i + 1) % rim]).collect()
+    }
+
+    #[test]
+    fn no_path_leads_through_a_hub() {
+        // A vertex of the rim has four to each side, and the hub, which has all as ever.
+        let sizes_of = |rim| sizes(rim + 1, fan(rim), 4);
+        assert!(sizes_of(257).into_iter().eq([258].into_iter().chain([10; 257])));
+        assert!(sizes_of(256).into_iter().all(|size| size == 257));
+    }
+
+    #[test]
+    fn a_ring_of_too_many_vertices_is_left_out() {
+        // Each of the three neighbours of 0 has 240 of its own: too many for two rings, and few enough for three.
+        let rim = |hub: u32| (0..240).map(move |i| [hub, 240 * hub + i, 240 * hub + (i + 1) % 240]);
+        let mut triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1]];
+        triangles.extend((1..4).flat_map(rim));
+        assert_eq!([1, 2, 3].map(|rings| sizes(960, triangles.clone(), rings)[0]), [4, 4, 4 + 720]);
     }
 }

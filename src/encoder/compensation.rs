@@ -3,7 +3,7 @@
 
 use crate::bitstream::compensation::Compensation;
 use crate::mesh::Surface;
-use crate::mesh::surface::{next, turns};
+use crate::mesh::surface::{NO_CORNER, next, turns};
 use crate::mesh::triangle::closest_shares;
 use crate::passes::GridMesh;
 use crate::passes::compensation::{Bend, bend};
@@ -16,6 +16,8 @@ use rustc_hash::FxHashMap;
 const NUM_POINTS: usize = 512;
 /// Steps to a neighbour in search of the triangle closest to a point.
 const MAX_STEPS: usize = 4;
+/// Triangles at one vertex that are looked at in that search: each point would see all those at a hub.
+const MOST_CORNERS: usize = 256;
 /// Shares of the squared error that weights must take off, and that weights may leave which stay as they are.
 const LEAST_GAIN: f64 = 0.02;
 const STAYS: f64 = 0.003;
@@ -101,7 +103,8 @@ impl<'a> Fitter<'a> {
             }
         }
         self.num_seen = vertex_source.len();
-        let mut bends = Bends { mesh, known: FxHashMap::default(), fan: Vec::new() };
+        let mut bends =
+            Bends { mesh, known: FxHashMap::default(), known_around: FxHashMap::default(), fan: Vec::new() };
         let mut squares = Squares::default();
         let scale = 1.0 / f64::from(1_u32 << hidden);
         for ((point, chain), reached) in self.points.iter().zip(&self.chains).zip(&mut self.reached) {
@@ -129,21 +132,25 @@ impl<'a> Fitter<'a> {
 struct Bends<'a> {
     mesh: &'a GridMesh,
     known: FxHashMap<u32, Bend>,
+    /// Mean heights of the neighbours' bends.
+    known_around: FxHashMap<u32, f64>,
     fan: Vec<u32>,
 }
 
 impl Bends<'_> {
     /// The bend of a vertex and the mean height of its neighbours'; 0 on boundaries.
     fn around(&mut self, vertex: u32) -> (Bend, f64) {
+        let own = self.of(vertex);
+        if let Some(&known) = self.known_around.get(&vertex) {
+            return (own, known);
+        }
         let surface = &self.mesh.surface;
         let is_closed = surface.fan(surface.corner_of[vertex as usize], &mut self.fan);
         let ring: Vec<u32> = self.fan.iter().map(|&corner| surface.vertex(next(corner))).collect();
-        let own = self.of(vertex);
-        if !is_closed {
-            return (own, 0.0);
-        }
-        let sum: f64 = ring.iter().map(|&v| self.of(v).height).sum();
-        (own, sum / ring.len() as f64)
+        let mut sum = |ring: &[u32]| ring.iter().map(|&v| self.of(v).height).sum::<f64>();
+        let around = if is_closed { sum(&ring) / ring.len() as f64 } else { 0.0 };
+        self.known_around.insert(vertex, around);
+        (own, around)
     }
 
     fn of(&mut self, vertex: u32) -> Bend {
@@ -222,7 +229,7 @@ fn closest(mesh: &GridMesh, mut vertex: u32, at: DVec3) -> Closest {
     let mut best = Closest { triangle, shares, normal, closest: at, distance: f64::INFINITY };
     let mut fan = Vec::new();
     for _ in 0..MAX_STEPS {
-        mesh.surface.fan(mesh.surface.corner_of[vertex as usize], &mut fan);
+        read_fan(&mesh.surface, vertex, &mut fan);
         for corner in &fan {
             let found = closest_of(mesh, mesh.surface.triangles[*corner as usize / 3], at);
             if found.distance < best.distance {
@@ -236,6 +243,18 @@ fn closest(mesh: &GridMesh, mut vertex: u32, at: DVec3) -> Closest {
         vertex = best.triangle[nearest];
     }
     best
+}
+
+/// The corners at a vertex; of too many those that follow one.
+fn read_fan(surface: &Surface, vertex: u32, fan: &mut Vec<u32>) {
+    let corner = surface.corner_of[vertex as usize];
+    if surface.valence[vertex as usize] as usize <= MOST_CORNERS {
+        surface.fan(corner, fan);
+        return;
+    }
+    let left = |&corner: &u32| Some(surface.swing_left(corner)).filter(|&left| left != NO_CORNER);
+    fan.clear();
+    fan.extend(std::iter::successors(Some(corner), left).take(MOST_CORNERS));
 }
 
 fn closest_of(mesh: &GridMesh, triangle: [u32; 3], at: DVec3) -> Closest {

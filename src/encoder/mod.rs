@@ -12,6 +12,7 @@ mod scale;
 mod schedule;
 mod scout;
 mod signatures;
+mod ties;
 mod trailing;
 mod values;
 mod write;

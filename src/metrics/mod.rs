@@ -10,10 +10,12 @@
 //! The same meshes give the same bits, whatever the number of threads: samples are taken in blocks of fixed
 //! size whose sums are added in order.
 
+mod crowd;
 mod nearest;
 mod sample;
 
 use crate::mesh::TriMesh;
+use crowd::{Crowd, Waiting};
 use glam::DVec3;
 use nearest::NearestTriangle;
 use rayon::prelude::*;
@@ -22,6 +24,14 @@ use thiserror::Error;
 
 /// Points measured by one thread at a time, and summed before they are added to the rest.
 const BLOCK_POINTS: usize = 4096;
+
+/// Points whose distances are kept before they are summed; a multiple of the above.
+const POINTS_AT_ONCE: usize = 1 << 20;
+
+/// Nodes of the tree that may be visited for a point, on the mean of those before it in its block, and some more at
+/// first. Hardly a point of scans and models takes as many.
+const STEPS: usize = 128;
+const FIRST_STEPS: usize = 1 << 13;
 
 /// Fewest samples by default, so that small meshes are measured as well as large ones.
 const MIN_DEFAULT_SAMPLES: usize = 100_000;
@@ -221,27 +231,62 @@ impl DistanceSum {
         count: usize,
         points: impl Fn(std::ops::Range<usize>) -> P + Sync,
     ) -> Self {
-        let measure_block = |block: usize| {
-            let begin = block * BLOCK_POINTS;
-            let mut sum = Self::default();
-            // Neighbours in a block are often neighbours in space: the last answer bounds the next search.
-            let mut hint = 0;
-            for point in points(begin..count.min(begin + BLOCK_POINTS)) {
-                let nearest = tree.nearest(point, hint);
-                hint = nearest.triangle;
-                let squared = if nearest.squared < NOISE * NOISE { 0.0 } else { nearest.squared };
-                sum.count += 1;
-                sum.sum_of_squares += squared;
-                sum.max_squared = sum.max_squared.max(squared);
-            }
-            sum
-        };
-        let blocks: Vec<Self> =
-            (0..count.div_ceil(BLOCK_POINTS)).into_par_iter().map(measure_block).collect();
+        let mut blocks = Vec::with_capacity(count.div_ceil(BLOCK_POINTS));
+        for begin in (0..count).step_by(POINTS_AT_ONCE) {
+            let end = count.min(begin + POINTS_AT_ONCE);
+            let squared = squared_distances(tree, begin..end, &points);
+            blocks.extend(squared.chunks(BLOCK_POINTS).map(Self::of));
+        }
         blocks.iter().fold(Self::default(), |total, block| Self {
             count: total.count + block.count,
             sum_of_squares: total.sum_of_squares + block.sum_of_squares,
             max_squared: total.max_squared.max(block.max_squared),
         })
     }
+
+    fn of(squared: &[f64]) -> Self {
+        let mut sum = Self { count: squared.len(), ..Self::default() };
+        for &squared in squared {
+            let squared = if squared < NOISE * NOISE { 0.0 } else { squared };
+            sum.sum_of_squares += squared;
+            sum.max_squared = sum.max_squared.max(squared);
+        }
+        sum
+    }
+}
+
+/// Squared distances of the points of a range, which `points` lists. Where the tree does not help, all that are left
+/// are found together.
+fn squared_distances<P: Iterator<Item = DVec3>>(
+    tree: &NearestTriangle,
+    range: std::ops::Range<usize>,
+    points: &(impl Fn(std::ops::Range<usize>) -> P + Sync),
+) -> Vec<f64> {
+    let mut squared = vec![0.0; range.len()];
+    let measure_block = |(block, squared): (usize, &mut [f64])| {
+        let begin = range.start + block * BLOCK_POINTS;
+        let mut waiting = Vec::new();
+        let mut steps = 0;
+        // Neighbours in a block are often neighbours in space: the last answer bounds the next search.
+        let mut hint = 0;
+        for (i, point) in points(begin..begin + squared.len()).enumerate() {
+            steps += if i == 0 { FIRST_STEPS } else { STEPS };
+            // After the first one that takes too long the others are left, too.
+            let helps = waiting.is_empty();
+            match helps.then(|| tree.nearest(point, hint, NOISE * NOISE, &mut steps)).flatten() {
+                Some(nearest) => (hint, squared[i]) = (nearest.triangle, nearest.squared),
+                None => {
+                    waiting.push(Waiting { point, index: block * BLOCK_POINTS + i, squared: 0.0 });
+                }
+            }
+        }
+        waiting
+    };
+    let blocks = squared.par_chunks_mut(BLOCK_POINTS).enumerate();
+    let mut waiting: Vec<Waiting> = blocks.flat_map_iter(measure_block).collect();
+    if !waiting.is_empty() {
+        Crowd::new(tree.triangles()).find(&mut waiting, NOISE * NOISE);
+        waiting.into_iter().for_each(|Waiting { index, squared: found, .. }| squared[index] = found);
+    }
+    squared
 }

@@ -51,12 +51,20 @@ impl NearestTriangle {
         Self { nodes, triangles }
     }
 
-    /// The triangle nearest to `point`. `hint` is any triangle; one that is near makes the search shorter.
-    pub fn nearest(&self, point: DVec3, hint: usize) -> Nearest {
+    /// In the order that [`Nearest`] names them by.
+    pub fn triangles(&self) -> &[[DVec3; 3]] {
+        &self.triangles
+    }
+
+    /// The triangle nearest to `point`. `hint` is any triangle; one that is near makes the search shorter. What is
+    /// below `noise`, squared, need not be the nearest. Takes the nodes it visits off `steps`; `None` where they do
+    /// not suffice.
+    pub fn nearest(&self, point: DVec3, hint: usize, noise: f64, steps: &mut usize) -> Option<Nearest> {
         let mut best = Nearest { squared: squared_distance(point, &self.triangles[hint]), triangle: hint };
         let mut waiting = [(0, 0.0); MAX_DEPTH];
         let mut num_waiting = 1;
-        while num_waiting > 0 {
+        while num_waiting > 0 && best.squared >= noise {
+            *steps = steps.checked_sub(1)?;
             num_waiting -= 1;
             let (at, box_squared) = waiting[num_waiting];
             if box_squared >= best.squared {
@@ -84,7 +92,7 @@ impl NearestTriangle {
             waiting[num_waiting + 1] = nearer;
             num_waiting += 2;
         }
-        best
+        Some(best)
     }
 }
 
@@ -133,11 +141,11 @@ fn build(triangles: &mut [[DVec3; 3]], nodes: &mut [Node], begin: usize) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// A fixed sequence of points in the unit cube.
-    fn points(count: usize) -> Vec<DVec3> {
+    pub(in super::super) fn points(count: usize) -> Vec<DVec3> {
         let mut state = 1_u64;
         let mut unit = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -164,7 +172,7 @@ mod tests {
                 let point = 3.0 * point - DVec3::ONE;
                 let expected =
                     triangles.iter().map(|t| squared_distance(point, t)).fold(f64::INFINITY, f64::min);
-                let found = tree.nearest(point, k * 7919 % count);
+                let found = tree.nearest(point, k * 7919 % count, 0.0, &mut usize::MAX.clone()).unwrap();
                 assert!((found.squared - expected).abs() <= 1e-15, "{count} triangles, point {k}");
                 assert_eq!(found.squared, squared_distance(point, &tree.triangles[found.triangle]));
             }

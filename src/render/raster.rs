@@ -1,9 +1,8 @@
 //! Which triangle is seen at each sample: a depth buffer over horizontal bands, one band per task.
 
+use super::band::{BAND_ROWS, Band};
 use rayon::prelude::*;
-
-/// Rows of a band.
-const BAND_ROWS: usize = 32;
+use std::collections::HashSet;
 
 /// Absence of a triangle.
 pub(super) const NOTHING: u32 = u32::MAX;
@@ -24,7 +23,7 @@ pub(super) struct Projected(pub(super) [[f64; 3]; 3]);
 
 impl Projected {
     /// Twice the signed area; a positive sign is clockwise on the picture.
-    fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         let [a, b, c] = self.0;
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     }
@@ -48,13 +47,13 @@ impl Projected {
         (0..3).map(side).fold(f64::INFINITY, f64::min)
     }
 
-    fn range(&self, axis: usize) -> (f64, f64) {
+    pub(super) fn range(&self, axis: usize) -> (f64, f64) {
         let [a, b, c] = self.0.map(|corner| corner[axis]);
         (a.min(b).min(c), a.max(b).max(c))
     }
 
     /// Samples along `axis` whose middles lie within, and within `0..count`.
-    fn samples(&self, axis: usize, count: usize) -> std::ops::Range<usize> {
+    pub(super) fn samples(&self, axis: usize, count: usize) -> std::ops::Range<usize> {
         let (low, high) = self.range(axis);
         // Casts saturate at 0.
         let begin = (low - 0.5).ceil() as usize;
@@ -66,27 +65,19 @@ impl Projected {
 impl Visible {
     /// Draws `triangles` on `width` by `height` samples; of equally near ones the first is seen.
     pub(super) fn new(triangles: &[Projected], width: usize, height: usize) -> Self {
-        let rows: Vec<(u32, u32)> = triangles
-            .par_iter()
-            .map(|t| t.samples(1, height))
-            .map(|range| (range.start.min(height) as u32, range.end as u32))
-            .collect();
         let mut visible = Self {
             width,
             height,
             triangle: vec![NOTHING; width * height],
             near: vec![f32::NEG_INFINITY; width * height],
         };
+        let order = drawing_order(triangles, width, height);
         let bands = visible.triangle.par_chunks_mut(BAND_ROWS * width);
         bands.zip(visible.near.par_chunks_mut(BAND_ROWS * width)).enumerate().for_each(
             |(band, (seen, near))| {
-                let first_row = band * BAND_ROWS;
-                let end_row = first_row + seen.len() / width;
-                for (i, &(begin, end)) in rows.iter().enumerate() {
-                    let band_rows = first_row.max(begin as usize)..end_row.min(end as usize);
-                    if !band_rows.is_empty() {
-                        draw(&triangles[i], i as u32, band_rows, first_row, width, seen, near);
-                    }
+                let mut band = Band::new(band * BAND_ROWS, width, seen, near);
+                for drawn in &order {
+                    band.draw(&triangles[drawn.triangle as usize], drawn);
                 }
             },
         );
@@ -94,42 +85,35 @@ impl Visible {
     }
 }
 
-/// Draws the rows `rows` of a triangle into a band that begins at row `first_row`.
-fn draw(
-    triangle: &Projected,
-    index: u32,
-    rows: std::ops::Range<usize>,
-    first_row: usize,
-    width: usize,
-    seen: &mut [u32],
-    near: &mut [f32],
-) {
-    let columns = triangle.samples(0, width);
-    if columns.is_empty() {
-        return;
+/// A triangle that is on the picture, with the rows it has there.
+pub(super) struct Drawn {
+    pub(super) triangle: u32,
+    pub(super) begin: u32,
+    pub(super) end: u32,
+}
+
+/// If the boxes of the triangles have more samples than this for each of the picture, much is hidden.
+const DEEP: f64 = 8.0;
+
+/// The triangles on the picture; the near ones first if there are many on top of each other, and equal ones once.
+fn drawing_order(triangles: &[Projected], width: usize, height: usize) -> Vec<Drawn> {
+    let drawn = |(t, triangle): (&Projected, u32)| {
+        let rows = t.samples(1, height);
+        let is_seen = !rows.is_empty() && !t.samples(0, width).is_empty();
+        is_seen.then(|| Drawn { triangle, begin: rows.start as u32, end: rows.end as u32 })
+    };
+    let numbers = (0..triangles.len() as u32).into_par_iter();
+    let mut order: Vec<Drawn> = triangles.par_iter().zip(numbers).filter_map(drawn).collect();
+    let samples = |d: &Drawn| {
+        f64::from(d.end - d.begin) * triangles[d.triangle as usize].samples(0, width).len() as f64
+    };
+    if order.iter().map(samples).sum::<f64>() > DEEP * (width * height) as f64 {
+        let mut known = HashSet::new();
+        order.retain(|d| known.insert(triangles[d.triangle as usize].0.map(|p| p.map(f64::to_bits))));
+        let nearest = |d: &Drawn| triangles[d.triangle as usize].range(2).1;
+        order.par_sort_by(|d, e| nearest(e).total_cmp(&nearest(d)));
     }
-    let nearness = triangle.0.map(|corner| corner[2]);
-    // Weights are linear along a row.
-    let at = |x: f64, y: f64| triangle.weights(x, y);
-    for row in rows {
-        let (x, y) = (columns.start as f64 + 0.5, row as f64 + 0.5);
-        let (Some(begin), Some(after)) = (at(x, y), at(x + 1.0, y)) else { return };
-        let step: [f64; 3] = std::array::from_fn(|i| after[i] - begin[i]);
-        let line = (row - first_row) * width;
-        for column in columns.clone() {
-            let along = (column - columns.start) as f64;
-            let weights: [f64; 3] = std::array::from_fn(|i| begin[i] + along * step[i]);
-            if weights.iter().any(|&w| w < -1e-9) {
-                continue;
-            }
-            let nearer = (0..3).map(|i| weights[i] * nearness[i]).sum::<f64>() as f32;
-            let sample = line + column;
-            if nearer > near[sample] {
-                near[sample] = nearer;
-                seen[sample] = index;
-            }
-        }
-    }
+    order
 }
 
 #[cfg(test)]
@@ -167,5 +151,55 @@ mod tests {
         let weights = triangle.weights(5.0, 3.0).unwrap();
         assert!((triangle.distance_to_sides(weights) - 3.0).abs() < 1e-12);
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+
+    /// All samples of all boxes, one after the other.
+    fn by_brute_force(triangles: &[Projected], width: usize, height: usize) -> (Vec<u32>, Vec<f32>) {
+        let mut seen = vec![NOTHING; width * height];
+        let mut near = vec![f32::NEG_INFINITY; width * height];
+        for (triangle, index) in triangles.iter().zip(0..) {
+            let columns = triangle.samples(0, width);
+            for row in triangle.samples(1, height) {
+                let (x, y) = (columns.start as f64 + 0.5, row as f64 + 0.5);
+                let Some((begin, after)) = triangle.weights(x, y).zip(triangle.weights(x + 1.0, y)) else {
+                    break;
+                };
+                let step: [f64; 3] = std::array::from_fn(|i| after[i] - begin[i]);
+                for (along, column) in columns.clone().enumerate() {
+                    let weights: [f64; 3] = std::array::from_fn(|i| begin[i] + along as f64 * step[i]);
+                    let nearer = (0..3).map(|i| weights[i] * triangle.0[i][2]).sum::<f64>() as f32;
+                    let sample = row * width + column;
+                    if weights.iter().all(|&w| w >= -1e-9) && nearer > near[sample] {
+                        (near[sample], seen[sample]) = (nearer, index);
+                    }
+                }
+            }
+        }
+        (seen, near)
+    }
+
+    #[test]
+    fn what_is_hidden_is_left_out_and_nothing_else() {
+        let mut state = 1_u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / (1_u64 << 24) as f64
+        };
+        let (width, height) = (150, 110);
+        let mut point = |size: f64| [size * unit() - 20.0, size * unit() - 20.0, 100.0 * unit()];
+        // Large ones at random, slivers from one point, some small ones and some several times.
+        let mut triangles: Vec<Projected> =
+            (0..300).map(|_| Projected([0; 3].map(|_| point(200.0)))).collect();
+        triangles.extend((0..300).map(|_| {
+            let far = point(180.0);
+            Projected([[60.0, 50.0, 70.0], far, [far[0] + 0.3, far[1] - 0.2, far[2]]])
+        }));
+        triangles.extend((0..300).map(|_| Projected([0; 3].map(|_| point(180.0).map(|c| 0.1 * c + 30.0)))));
+        triangles.extend_from_within(100..200);
+        for triangles in [&triangles[..], &triangles[..4], &triangles[300..310], &triangles[..20].repeat(30)]
+        {
+            let visible = Visible::new(triangles, width, height);
+            assert!((visible.triangle, visible.near) == by_brute_force(triangles, width, height));
+        }
     }
 }

@@ -5,6 +5,7 @@ pub(crate) mod collapse;
 mod deviation;
 pub(crate) mod geometry;
 pub(crate) mod hole;
+mod hubs;
 pub(crate) mod memory;
 pub(crate) mod outlook;
 pub(crate) mod packing;

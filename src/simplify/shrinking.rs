@@ -1,6 +1,7 @@
 //! A surface from which vertices are taken, one star at a time.
 
 use super::Rings;
+use super::hubs::Hubs;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 
@@ -34,6 +35,7 @@ pub(crate) struct ShrinkingSurface {
     num_faces: usize,
     /// Of each vertex the bits of all neighbours that it has or had: who is not among them is none.
     acquaintances: Vec<u32>,
+    hubs: Hubs,
     /// Scratch: neighbours of the polygon corners and the corner across each polygon edge.
     after: Vec<usize>,
     before: Vec<usize>,
@@ -57,6 +59,7 @@ impl ShrinkingSurface {
         }
         Self {
             acquaintances,
+            hubs: Hubs::new(&surface),
             num_vertices: surface.corner_of.len(),
             num_faces: surface.triangles.len(),
             surface,
@@ -141,6 +144,9 @@ impl ShrinkingSurface {
             return false;
         }
         let s = &self.surface;
+        if s.valence[a as usize].min(s.valence[b as usize]) > Hubs::MOST {
+            return self.hubs.has_edge(a, b);
+        }
         let (from, to) = if s.valence[a as usize] <= s.valence[b as usize] { (a, b) } else { (b, a) };
         let start = s.corner_of[from as usize];
         let mut corner = start;
@@ -166,6 +172,15 @@ impl ShrinkingSurface {
         false
     }
 
+    /// Takes a vertex to the hubs if it has become one.
+    fn see_hub(&mut self, vertex: u32) {
+        if self.surface.valence[vertex as usize] > Hubs::MOST && !self.hubs.contains(vertex) {
+            let mut neighbours = Vec::new();
+            self.for_each_neighbour(vertex, |u, _| neighbours.push(u));
+            self.hubs.add(vertex, &neighbours);
+        }
+    }
+
     /// Takes the vertex of `star` out and closes the hole by cutting ears: `ears[k]` is the ring
     /// index whose corner the k-th triangle cuts off; `degree − 2` of them. Returns the slots of the
     /// star's faces: the new triangles stand in the first ones, in order.
@@ -189,6 +204,7 @@ impl ShrinkingSurface {
             let (first, last) = (star.ring[0], star.ring[degree - 1]);
             self.acquaintances[first as usize] |= bit(last);
             self.acquaintances[last as usize] |= bit(first);
+            self.hubs.join(first, last);
         }
         for (i, &v) in star.ring.iter().enumerate() {
             let is_end = i == 0 || i == degree - 1;
@@ -216,6 +232,7 @@ impl ShrinkingSurface {
                     surface.valence[star.ring[i] as usize] += 1;
                     self.acquaintances[star.ring[i] as usize] |= bit(star.ring[j]);
                 }
+                self.hubs.join(star.ring[p], star.ring[n]);
                 self.outer[p] = base + 1;
                 self.after[p] = n;
                 self.before[n] = p;
@@ -233,6 +250,7 @@ impl ShrinkingSurface {
         surface.corner_of[star.vertex as usize] = NO_CORNER;
         self.num_vertices -= 1;
         self.num_faces -= star.corners.len() - ears.len();
+        star.ring.iter().for_each(|&v| self.see_hub(v));
         &self.slots
     }
 }
@@ -296,5 +314,42 @@ mod tests {
             check(&shrinking);
             assert!(!shrinking.contains(vertex));
         }
+    }
+
+    #[test]
+    fn hubs_know_the_edges_between_them() {
+        // Two hubs over a rim: they become neighbours when a vertex of the rim goes, by the diagonal between them.
+        let n = 2 * Hubs::MOST;
+        let rim = |i: u32| 2 + i % n;
+        let triangles = (0..n).flat_map(|i| [[0, rim(i), rim(i + 1)], [1, rim(i + 1), rim(i)]]).collect();
+        let surface = Surface::from_triangles(triangles, 2 + n as usize).unwrap();
+        let mut shrinking = ShrinkingSurface::new(surface);
+        assert!(!shrinking.has_edge(0, 1));
+        let mut star = Star::default();
+        shrinking.read_star(5, &mut star);
+        let beside_hub = star.ring.iter().position(|&v| v > 1).unwrap();
+        shrinking.remove(&star, &[beside_hub, (beside_hub + 2) % 4]);
+        assert!(shrinking.has_edge(0, 1) && shrinking.has_edge(1, 0));
+        check(&shrinking);
+    }
+
+    #[test]
+    fn a_vertex_becomes_a_hub() {
+        // Two strips of hubs to be: each vertex between them goes into the first of its row.
+        let n = Hubs::MOST + 20;
+        let rim = |i: u32| 2 + i % n;
+        let triangles: Vec<[u32; 3]> =
+            (0..n).flat_map(|i| [[0, rim(i), rim(i + 1)], [1, rim(i + 1), rim(i)]]).collect();
+        let surface = Surface::from_triangles(triangles, 2 + n as usize).unwrap();
+        let mut shrinking = ShrinkingSurface::new(surface);
+        // Hub 1 goes into vertex 2, which then has all others of the rim as neighbours, and hub 0.
+        let mut star = Star::default();
+        shrinking.read_star(1, &mut star);
+        let target = star.ring.iter().position(|&v| v == 2).unwrap();
+        let degree = star.degree();
+        let ears: Vec<usize> = (1..degree - 1).map(|i| (target + i) % degree).collect();
+        shrinking.remove(&star, &ears);
+        assert!(shrinking.surface.valence[2] > Hubs::MOST && shrinking.has_edge(0, 2));
+        check(&shrinking);
     }
 }
