@@ -58,6 +58,9 @@ typedef enum LwcStatus {
   // An array cannot be one: its address is not a multiple of its type's alignment, or it has more bytes than memory
   // can.
   LWC_STATUS_ARRAY = 18,
+  // The calling thread rounds floating-point numbers another way than to nearest, or takes subnormal ones for zero:
+  // its mode must be the default one. Game engines, audio libraries and code built with fast arithmetic change it.
+  LWC_STATUS_FLOATING_POINT = 19,
 } LwcStatus;
 
 // What the values mean.
@@ -163,6 +166,8 @@ typedef struct LwcDecodeOptions {
   uint32_t max_vertices;
   // Most levels.
   uint32_t max_levels;
+  // Most units of work, each about a tenth of a microsecond; 0: in proportion to the bytes of the stream.
+  uint64_t max_work;
   // Leave the vertices of coarse levels where they are in the finest mesh.
   bool uncompensated;
 } LwcDecodeOptions;
