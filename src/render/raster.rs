@@ -100,7 +100,7 @@ fn drawing_order(triangles: &[Projected], width: usize, height: usize) -> Vec<Dr
     let drawn = |(t, triangle): (&Projected, u32)| {
         let rows = t.samples(1, height);
         let is_seen = !rows.is_empty() && !t.samples(0, width).is_empty();
-        is_seen.then(|| Drawn { triangle, begin: rows.start as u32, end: rows.end as u32 })
+        is_seen.then_some(Drawn { triangle, begin: rows.start as u32, end: rows.end as u32 })
     };
     let numbers = (0..triangles.len() as u32).into_par_iter();
     let mut order: Vec<Drawn> = triangles.par_iter().zip(numbers).filter_map(drawn).collect();
