@@ -12,6 +12,7 @@
 
 mod crowd;
 mod nearest;
+mod parts;
 mod sample;
 
 use crate::mesh::TriMesh;

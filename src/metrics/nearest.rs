@@ -2,12 +2,14 @@
 //!
 //! A binary tree of bounding boxes in one flat array, each node followed by its left subtree. The number of
 //! triangles alone gives the shape of the tree, so both halves can be built at once. A search goes into the
-//! nearer box first and leaves out boxes that are farther away than the best triangle so far.
+//! nearer box first and leaves out boxes that are farther away than the best triangle so far. Long thin triangles are in
+//! the tree part by part, or their boxes would all overlap.
 
+use super::parts::{self, Part};
 use crate::mesh::triangle::squared_distance;
 use glam::DVec3;
 
-/// Triangles in a leaf; only the last leaf has fewer.
+/// Parts in a leaf; only the last leaf has fewer.
 const LEAF_TRIANGLES: usize = 4;
 
 /// Fewer triangles than this are not worth another thread.
@@ -19,7 +21,9 @@ const MAX_DEPTH: usize = 40;
 /// A search structure over triangles, degenerate ones included.
 pub(super) struct NearestTriangle {
     nodes: Vec<Node>,
-    /// In the order of the leaves.
+    /// In the order of the leaves, the triangle of each part.
+    parts: Vec<u32>,
+    /// In the order of their first parts.
     triangles: Vec<[DVec3; 3]>,
 }
 
@@ -27,7 +31,7 @@ pub(super) struct NearestTriangle {
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// Triangles below: `begin..begin + count`. A leaf has at most [`LEAF_TRIANGLES`].
+    /// Parts below: `begin..begin + count`. A leaf has at most [`LEAF_TRIANGLES`].
     begin: u32,
     count: u32,
 }
@@ -45,10 +49,11 @@ impl NearestTriangle {
     /// `triangles` must not be empty.
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
         assert!(!triangles.is_empty(), "no triangle to be near to");
-        let mut triangles = triangles.to_vec();
-        let mut nodes = vec![Node::default(); num_nodes(triangles.len())];
-        build(&mut triangles, &mut nodes, 0);
-        Self { nodes, triangles }
+        let mut parts = parts::split(triangles);
+        let mut nodes = vec![Node::default(); num_nodes(parts.len())];
+        build(&mut parts, &mut nodes, 0);
+        let (parts, triangles) = parts::renumbered(&parts, triangles);
+        Self { nodes, parts, triangles }
     }
 
     /// In the order that [`Nearest`] names them by.
@@ -74,10 +79,11 @@ impl NearestTriangle {
             let begin = node.begin as usize;
             let count = node.count as usize;
             if count <= LEAF_TRIANGLES {
-                for (k, triangle) in self.triangles[begin..begin + count].iter().enumerate() {
-                    let squared = squared_distance(point, triangle);
+                for &part in &self.parts[begin..begin + count] {
+                    let triangle = part as usize;
+                    let squared = squared_distance(point, &self.triangles[triangle]);
                     if squared < best.squared {
-                        best = Nearest { squared, triangle: begin + k };
+                        best = Nearest { squared, triangle };
                     }
                 }
                 continue;
@@ -112,23 +118,23 @@ fn num_left(count: usize) -> usize {
     count.div_ceil(LEAF_TRIANGLES) / 2 * LEAF_TRIANGLES
 }
 
-/// Sorts `triangles`, which begin at `begin` of all, into the leaves of the tree in `nodes`.
-fn build(triangles: &mut [[DVec3; 3]], nodes: &mut [Node], begin: usize) {
+/// Sorts `parts`, which begin at `begin` of all, into the leaves of the tree in `nodes`.
+fn build(parts: &mut [Part], nodes: &mut [Node], begin: usize) {
     let bounds = |low: DVec3, high: DVec3, p: DVec3| (low.min(p), high.max(p));
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = triangles.as_flattened().iter().fold(none, |(low, high), &p| bounds(low, high, p));
-    let count = triangles.len();
+    let (low, high) = parts.iter().fold(none, |(low, high), part| (low.min(part.low), high.max(part.high)));
+    let count = parts.len();
     nodes[0] = Node { low, high, begin: begin as u32, count: count as u32 };
     if count <= LEAF_TRIANGLES {
         return;
     }
-    // Three times the centre of a triangle serves as well as the centre.
-    let centre = |t: &[DVec3; 3]| t[0] + t[1] + t[2];
-    let (low, high) = triangles.iter().map(centre).fold(none, |(low, high), p| bounds(low, high, p));
+    // Twice the centre of a box serves as well as the centre.
+    let centre = |part: &Part| part.low + part.high;
+    let (low, high) = parts.iter().map(centre).fold(none, |(low, high), p| bounds(low, high, p));
     let axis = (high - low).max_position();
     let num_left = num_left(count);
-    triangles.select_nth_unstable_by(num_left, |s, t| centre(s)[axis].total_cmp(&centre(t)[axis]));
-    let (left, right) = triangles.split_at_mut(num_left);
+    parts.select_nth_unstable_by(num_left, |s, t| centre(s)[axis].total_cmp(&centre(t)[axis]));
+    let (left, right) = parts.split_at_mut(num_left);
     let (left_nodes, right_nodes) = nodes[1..].split_at_mut(num_nodes(num_left));
     let mut build_left = || build(left, left_nodes, begin);
     let mut build_right = || build(right, right_nodes, begin + num_left);
@@ -159,7 +165,8 @@ pub(super) mod tests {
         for count in [1, 2, 4, 5, 8, 9, 31, 100, 1000, 20_000] {
             let corners = points(3 * count);
             // Some small, some large, some degenerate, some all the same.
-            let shape = |(k, t): (usize, &[DVec3; 3])| match k % 5 {
+            let shape = |(k, t): (usize, &[DVec3; 3])| match k % 6 {
+                5 => [t[0], t[1], t[1] + 0.001 * t[2]],
                 0 => t.map(|p| t[0] + 0.05 * p),
                 1 => [t[0], t[0], t[1]],
                 2 => [t[0]; 3],
