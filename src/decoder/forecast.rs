@@ -2,6 +2,7 @@
 //! than its bytes earn is refused before it has begun.
 
 use super::frame::{StreamInfo, TrailingKind};
+use super::head::ASSETS;
 use crate::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::Domain;
@@ -24,7 +25,7 @@ pub(super) fn check(info: &StreamInfo, declared: &Declarations, limits: &Limits)
         work += if pass.glue_bytes > 0 { cost::glue(counts) } else { 0 };
         Limits::check("work", work, allowed(limits, pass.end))?;
     }
-    for trailing in &info.trailing {
+    for trailing in info.trailing.iter().filter(|_| ASSETS) {
         work += of_trailing(trailing.kind, counts, declared);
         Limits::check("work", work, allowed(limits, trailing.end))?;
     }

@@ -108,13 +108,17 @@ impl Head {
         let passes = self.list_passes(&header, source).map_err(|what| malformed(what, source.chunk))?;
         let (passes, trailing) = passes;
         let none = Declarations::default();
-        let declared = self.declarations.as_ref().unwrap_or(&none);
+        let declared = self.declared().unwrap_or(&none);
         let info = StreamInfo {
             grid: header.grid,
             provenance: self.provenance.or(header.is_usual.then_some(Provenance::USUAL)),
             profile: profile_of(&header)?,
             passes,
-            attributes: declared.list.iter().map(AttributeInfo::of).collect(),
+            attributes: if ASSETS {
+                declared.list.iter().map(AttributeInfo::of).collect()
+            } else {
+                Vec::new()
+            },
             trailing,
             scene: self.scene.take(),
             work: 0,
@@ -126,23 +130,28 @@ impl Head {
         Ok(StreamInfo { work, ..info })
     }
 
+    /// The declarations, unless this decoder skips them.
+    fn declared(&self) -> Option<&Declarations> {
+        self.declarations.as_ref().filter(|_| ASSETS)
+    }
+
     /// The passes with all that belongs to them, and what follows the last one.
     fn list_passes(
         &mut self,
         header: &Header,
         source: Source,
     ) -> Result<(Vec<PassInfo>, Vec<TrailingInfo>), &'static str> {
-        let bytes = self.declarations.as_ref().map_or(&[][..], |declared| &declared.bytes);
+        let bytes = self.declared().map_or(&[][..], |declared| &declared.bytes);
         let start = source.frames.position();
         let passes = frame::list_passes(source.payload(), &header.grid, start, bytes);
         let mut passes = passes.map_err(|bad| bad.0)?;
-        if let Some(declared) = &self.declarations {
+        if let Some(declared) = self.declared() {
             attributes::check_density(declared, &passes)?;
         }
         if let Some(payload) = self.compensation.take() {
             frame::add_compensation(&mut passes, &payload).map_err(|bad| bad.0)?;
         }
-        let announced = self.announced.take().unwrap_or_default();
+        let announced = self.announced.take().filter(|_| ASSETS).unwrap_or_default();
         let trailing = frame::add_announced(&mut passes, &announced).map_err(|bad| bad.0)?;
         Ok((passes, trailing))
     }

@@ -272,7 +272,8 @@ impl Decoder {
 
     /// Bytes of memory that are held besides the mesh and its attributes.
     fn memory_besides(&self) -> u64 {
-        self.frames.memory() + self.head.memory() + self.extras.memory()
+        let extras = if ASSETS { self.extras.memory() } else { 0 };
+        self.frames.memory() + self.head.memory() + extras
     }
 
     fn begin(&mut self, chunk: Chunk, work: &mut Work) -> Result<Step, DecodeError> {
