@@ -108,6 +108,7 @@ impl Head {
         let passes = self.list_passes(&header, source).map_err(|what| malformed(what, source.chunk))?;
         let (passes, trailing) = passes;
         let none = Declarations::default();
+        let scene = self.scene.take();
         let declared = self.declared().unwrap_or(&none);
         let info = StreamInfo {
             grid: header.grid,
@@ -120,7 +121,7 @@ impl Head {
                 Vec::new()
             },
             trailing,
-            scene: self.scene.take(),
+            scene,
             work: 0,
         };
         let models = attributes::bytes_of_models(declared, info.profile.mixing());
