@@ -25,6 +25,7 @@ pub(super) struct MeshBuilder {
 
 impl MeshBuilder {
     /// For a file of so many bytes.
+    #[cfg(any(feature = "gltf", feature = "las"))]
     pub fn for_file(num_bytes: usize) -> Self {
         Self { num_bytes, ..Self::default() }
     }

@@ -1,7 +1,7 @@
 //! The bytes of a file in pieces, so that a parser needs no more memory than what it keeps.
 
 use super::ReadError;
-use std::io::{self, Read};
+use std::io::Read;
 
 /// Bytes read at a time.
 const PIECE_BYTES: usize = 1 << 16;
@@ -144,9 +144,10 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// If it cannot be read, or memory is short.
+    #[cfg(any(feature = "gltf", feature = "las", test))]
     pub fn into_bytes(mut self) -> Result<Vec<u8>, ReadError> {
         let room = self.room_for(1);
-        self.buffer.try_reserve_exact(room).map_err(io::Error::other)?;
+        self.buffer.try_reserve_exact(room).map_err(std::io::Error::other)?;
         while self.read_more() {}
         self.buffer.drain(..self.start);
         self.failure.map_or(Ok(self.buffer), Err)
@@ -196,14 +197,14 @@ mod tests {
     struct Slow<'a>(&'a [u8]);
 
     impl Read for Slow<'_> {
-        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
             match self.0.split_first() {
                 Some((byte, rest)) => {
                     buffer[0] = *byte;
                     self.0 = rest;
                     Ok(1)
                 }
-                None => Err(io::Error::other("torn")),
+                None => Err(std::io::Error::other("torn")),
             }
         }
     }

@@ -65,7 +65,6 @@ impl TriMesh {
     }
 
     /// Arrays that are known to make a mesh.
-    #[cfg(any(feature = "encoder", feature = "io", test))]
     pub(crate) fn from_valid_parts(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
         debug_assert!(triangles.iter().flatten().all(|&v| (v as usize) < positions.len()));
         Self { positions, triangles }
@@ -77,7 +76,7 @@ impl TriMesh {
         let is_sound = |t: &[u32; 3]| t.iter().all(|&v| (v as usize) < positions.len());
         debug_assert!(triangles.iter().all(is_sound));
         triangles.retain(is_sound);
-        Self { positions, triangles }
+        Self::from_valid_parts(positions, triangles)
     }
 
     /// Vertex positions, n × 3, model units.
