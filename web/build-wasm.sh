@@ -7,7 +7,12 @@ set -euo pipefail
 cd "$(dirname "$0")"
 target=wasm32-unknown-unknown
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/../target}/wasm"
-export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="-C target-feature=+simd128 -C panic=abort"
+rustflags="-C target-feature=+simd128 -C panic=abort"
+# Where this machine keeps its packages is nothing to ship.
+for packages in "${CARGO_HOME:-$HOME/.cargo}"/registry/src/*/; do
+    rustflags+=" --remap-path-prefix=$packages="
+done
+export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="$rustflags"
 
 cargo=cargo flags=()
 if [ ! -e "$(rustc --print target-libdir --target $target)" ]; then
