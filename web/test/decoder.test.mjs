@@ -246,6 +246,8 @@ test('the module is small', (t) => {
   for (const [which, path] of Object.entries(modules)) {
     const size = gzipSync(readFileSync(new URL(path, import.meta.url)), { level: 9 }).length;
     t.diagnostic(`${which}: ${size} bytes gzip`);
-    assert.ok(size < (which.includes('attributes') ? 200_000 : 102_400), `${which}: ${size} bytes gzip`);
+    // Debian's compiler makes it 1.5 % larger than the one that is shipped.
+    const most = which.includes('attributes') ? 200_000 : which === 'embedded' ? 100_000 : 102_400;
+    assert.ok(size < most, `${which}: ${size} bytes gzip`);
   }
 });
