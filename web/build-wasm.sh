@@ -8,7 +8,8 @@ cd "$(dirname "$0")"
 target=wasm32-unknown-unknown
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/../target}/wasm"
 rustflags="-C target-feature=+simd128 -C panic=abort"
-# Where this machine keeps its packages is nothing to ship.
+# Where this machine keeps its packages and its library is nothing to ship.
+rustflags+=" --remap-path-prefix=$(rustc --print sysroot)/lib/rustlib/src/rust=rust"
 for packages in "${CARGO_HOME:-$HOME/.cargo}"/registry/src/*/; do
     rustflags+=" --remap-path-prefix=$packages="
 done
