@@ -3,30 +3,13 @@
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
+#[path = "common/heap.rs"]
+mod heap;
 
 use common::chunks::{self, Chunk, Row};
 use common::*;
+use heap::{peak, turn};
 use lwc::{DecodeError, Decoder, EncodeOptions, Limits, Profile, TriMesh, encode};
-use peak_alloc::PeakAlloc;
-use std::sync::{Mutex, MutexGuard};
-
-#[global_allocator]
-static HEAP: PeakAlloc = PeakAlloc;
-
-/// The heap is one for all tests: they take turns.
-static TURN: Mutex<()> = Mutex::new(());
-
-fn turn() -> MutexGuard<'static, ()> {
-    TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-}
-
-/// Result of `f`, and the most bytes it held at once beyond those that were there before.
-fn peak<T>(f: impl FnOnce() -> T) -> (T, usize) {
-    let before = HEAP.current_usage();
-    HEAP.reset_peak_usage();
-    let result = f();
-    (result, HEAP.peak_usage().saturating_sub(before))
-}
 
 /// Tables that are made once, and threads.
 fn warm_up() {

@@ -2,34 +2,15 @@
 #![cfg(all(feature = "gltf", feature = "las"))]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
+#[path = "common/heap.rs"]
+mod heap;
+
+use heap::{peak, turn};
 use lwc::io::{self, Format, ReadError, ReadOptions};
-use peak_alloc::PeakAlloc;
-use std::{
-    fs,
-    path::PathBuf,
-    sync::{Mutex, MutexGuard},
-};
+use std::{fs, path::PathBuf};
 use tempfile::TempDir;
 
-#[global_allocator]
-static HEAP: PeakAlloc = PeakAlloc;
-
-/// The heap is one for all tests: they take turns.
-static TURN: Mutex<()> = Mutex::new(());
-
 const MIB: usize = 1 << 20;
-
-fn turn() -> MutexGuard<'static, ()> {
-    TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-}
-
-/// Result of `f`, and the most bytes it held at once beyond those that were there before.
-fn peak<T>(f: impl FnOnce() -> T) -> (T, usize) {
-    let before = HEAP.current_usage();
-    HEAP.reset_peak_usage();
-    let result = f();
-    (result, HEAP.peak_usage().saturating_sub(before))
-}
 
 /// A file of so many bytes: `head`, `filling` over and over, `tail`.
 fn filled(head: &str, filling: &str, num_bytes: usize, tail: &str) -> Vec<u8> {
