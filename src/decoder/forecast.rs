@@ -11,7 +11,7 @@ use crate::passes::cost::{self, Counts};
 
 /// Units of work that may be done by the time that so many bytes of the stream have been read.
 pub(super) fn allowed(limits: &Limits, bytes: u64) -> u64 {
-    limits.max_work.unwrap_or(cost::FREE + cost::PER_BYTE * bytes)
+    limits.max_work.unwrap_or(cost::earned(bytes))
 }
 
 /// Checks what each pass and each chunk behind the last one costs against what the bytes up to its end earn. Returns the

@@ -61,7 +61,7 @@ mod tests {
         assert_eq!(split.payload.len(), split.row.bytes as usize);
         assert_eq!(split.payload[100..], vec![0; split.payload.len() - 100]);
         let cost = 10 * 8000 + 5 * 8000 + 2 * (208_000 + 100_000) + 12 * 100_000;
-        let earned = |bytes: u32| cost::FREE + cost::PER_BYTE * u64::from(bytes);
+        let earned = |bytes: u32| cost::earned(bytes.into());
         assert!(earned(4000 + split.row.bytes) >= cost && earned(3999 + split.row.bytes) < cost);
         let cost = cost + 6 * 208_000;
         let bytes = 4000 + split.row.bytes + refinement.row.bytes;

@@ -15,6 +15,7 @@ use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, Residu
 use crate::descriptors::{Descriptor, Window};
 use crate::io::{self, Format, TerrainOptions};
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, Values, has_three_vertices};
+use crate::passes::cost;
 use crate::{
     DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Profile, Step,
     StreamInfo, TriMesh, Update, encode_with_attributes,
@@ -79,7 +80,7 @@ fn check_stream(stream: &[u8]) {
         }
         assert_sound(preview);
     }
-    let allowed = (1 << 18) + 128 * stream.len() as u64;
+    let allowed = cost::earned(stream.len() as u64);
     assert!(decoder.work_done() <= allowed + (1 << 12), "{} units of {allowed}", decoder.work_done());
 }
 

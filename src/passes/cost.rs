@@ -6,9 +6,9 @@
 use crate::bitstream::header::{Action, Pass};
 
 /// Units that any stream may take.
-pub(crate) const FREE: u64 = 1 << 18;
+const FREE: u64 = 1 << 18;
 /// Units that a byte earns.
-pub(crate) const PER_BYTE: u64 = 128;
+const PER_BYTE: u64 = 128;
 
 /// Units of a base mesh for each face: gates of the growth, edges at its vertices.
 const BASE_PER_FACE: u64 = 10;
@@ -30,6 +30,11 @@ const VALUES_PER_COMPONENT: u64 = 4;
 const ORDER_PER_ELEMENT: u64 = 12;
 /// Units of a vertex or face that lies loose, and of what other chunks say of it.
 const LOOSE_EACH: u64 = 4 + EXACT_PER_VERTEX + ORDER_PER_ELEMENT;
+
+/// Units that a stream may take by the end of so many bytes.
+pub(crate) fn earned(bytes: u64) -> u64 {
+    FREE + PER_BYTE * bytes
+}
 
 /// Elements of the mesh before a pass or after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -97,7 +102,7 @@ pub(crate) struct Ledger {
 impl Ledger {
     /// Bytes that are missing until all is earned.
     pub(crate) fn missing(&self) -> u64 {
-        self.cost.saturating_sub(FREE + PER_BYTE * self.bytes).div_ceil(PER_BYTE)
+        self.cost.saturating_sub(earned(self.bytes)).div_ceil(PER_BYTE)
     }
 }
 
