@@ -23,7 +23,7 @@ const FEW_POINTS: usize = 2;
 const FEW_TRIANGLES: usize = 16;
 
 /// After so many halvings triangles may be seen anew.
-const RENEWED: usize = 3;
+const RENEWED: usize = 4;
 
 /// Fewer points are not worth another thread.
 const MIN_PARALLEL_POINTS: usize = 1024;
@@ -48,7 +48,6 @@ struct Candidate {
 /// Triangles as they were seen from the middle of a ball of points, so many halvings ago.
 struct Seen {
     candidates: Vec<Candidate>,
-    radius: f64,
     depth: usize,
 }
 
@@ -81,6 +80,30 @@ impl HalfSpace {
     }
 }
 
+/// How far the points of a ball are from one place on the surface: the farther, the more they lie on the other side.
+struct Reach {
+    /// From the place to the middle.
+    away: DVec3,
+    radius: f64,
+    /// The distance of the middle, with what the sphere around the place bends within the ball.
+    most: f64,
+}
+
+impl Reach {
+    fn new(centre: DVec3, radius: f64, place: DVec3) -> Self {
+        let away = centre - place;
+        let distance = away.length();
+        Self { away: away.normalize_or_zero(), radius, most: distance + 0.5 * radius * radius / distance }
+    }
+
+    /// Whether a point of the ball may be as near to what a half-space holds as to the place: heights and distances are nearly
+    /// linear, and only differ as their directions do.
+    fn may_hold(&self, space: &HalfSpace, centre: DVec3) -> bool {
+        let turn = (self.away - space.normal).length();
+        space.height(centre) <= slackened(self.most + self.radius * turn) || !self.most.is_finite()
+    }
+}
+
 impl Candidate {
     /// The distance of a point is at least this.
     fn least_distance(&self, point: DVec3) -> f64 {
@@ -103,11 +126,7 @@ impl<'a> Crowd<'a> {
         let nowhere = HalfSpace { normal: DVec3::ZERO, offset: 0.0 };
         let candidate =
             |(triangle, corners)| Candidate { triangle, plane: HalfSpace::of(corners), support: nowhere };
-        let seen = Seen {
-            candidates: (0..).zip(self.triangles).map(candidate).collect(),
-            radius: f64::INFINITY,
-            depth: 0,
-        };
+        let seen = Seen { candidates: (0..).zip(self.triangles).map(candidate).collect(), depth: 0 };
         let all: Vec<u32> = (0..self.triangles.len() as u32).collect();
         self.find_among(points, &seen, &all, RENEWED, noise);
     }
@@ -117,10 +136,10 @@ impl<'a> Crowd<'a> {
         let Some((low, high)) = bounds(points) else { return };
         let centre = 0.5 * (low + high);
         let radius = points.iter().map(|p| p.point.distance_squared(centre)).fold(0.0, f64::max).sqrt();
-        let (least, near) = self.near(centre, 2.0 * radius, seen, near);
+        let near = self.near(centre, radius, seen, near);
         if points.len() <= FEW_POINTS || near.len() <= FEW_TRIANGLES || radius == 0.0 {
             points.iter_mut().for_each(|p| p.squared = self.least(p.point, seen, &near, noise));
-        } else if depth >= seen.depth + RENEWED && seen.radius * seen.radius > 0.5 * radius * least {
+        } else if depth >= seen.depth + RENEWED {
             let (seen, near) = self.see_from(centre, radius, depth, seen, &near);
             self.halve(points, (low, high), |points| self.find_among(points, &seen, &near, depth + 1, noise));
         } else {
@@ -152,22 +171,29 @@ impl<'a> Crowd<'a> {
         squared_distance(point, &self.triangles[candidate.triangle as usize])
     }
 
-    /// The distance of a point, and those that may be at most `more` farther from it.
-    fn near(&self, point: DVec3, more: f64, seen: &Seen, among: &[u32]) -> (f64, Vec<u32>) {
+    /// Those that may be nearest to a point of a ball.
+    fn near(&self, centre: DVec3, radius: f64, seen: &Seen, among: &[u32]) -> Vec<u32> {
         let mut least = f64::INFINITY;
+        let mut nearest = 0;
         let mut near = Vec::with_capacity(among.len());
         for &i in among {
             let candidate = &seen.candidates[i as usize];
-            let at_least = candidate.least_distance(point);
+            let at_least = candidate.least_distance(centre);
             if at_least < least {
-                least = least.min(self.squared_distance(point, candidate).sqrt());
+                let distance = self.squared_distance(centre, candidate).sqrt();
+                (least, nearest) =
+                    if distance < least { (distance, candidate.triangle) } else { (least, nearest) };
             }
-            if at_least <= slackened(least + more) {
+            if at_least <= slackened(least + 2.0 * radius) {
                 near.push((at_least, i));
             }
         }
-        let bound = slackened(least + more);
-        (least, near.into_iter().filter(|&(at_least, _)| at_least <= bound).map(|(_, i)| i).collect())
+        let reach = Reach::new(centre, radius, nearest_point(centre, &self.triangles[nearest as usize]));
+        let bound = slackened(least + 2.0 * radius);
+        let may_be_nearest = |&(at_least, i): &(f64, u32)| {
+            at_least <= bound && reach.may_hold(&seen.candidates[i as usize].support, centre)
+        };
+        near.into_iter().filter(may_be_nearest).map(|(_, i)| i).collect()
     }
 
     /// The candidates anew, with the half-spaces that show best what is far from points in a ball.
@@ -184,9 +210,9 @@ impl<'a> Crowd<'a> {
             let support = HalfSpace::facing(centre, &self.triangles[candidate.triangle as usize]);
             Candidate { support, ..candidate }
         };
-        let seen = Seen { candidates: among.iter().map(facing).collect(), radius, depth };
+        let seen = Seen { candidates: among.iter().map(facing).collect(), depth };
         let all: Vec<u32> = (0..seen.candidates.len() as u32).collect();
-        let (_, near) = self.near(centre, 2.0 * radius, &seen, &all);
+        let near = self.near(centre, radius, &seen, &all);
         (seen, near)
     }
 
