@@ -56,7 +56,7 @@ PARTS = {
         ("src/bitstream/residual.rs", r"\[tables\.stretch_real\([^\]]*\)\]", "[]"),
     ],
     "Mixing: what size adds, by max": [
-        ("src/profile.rs", r"Profile::Max => Mixing::Specialised", "Profile::Max => Mixing::Plain"),
+        ("src/bitstream/profile.rs", r"Profile::Max => Mixing::Specialised", "Profile::Max => Mixing::Plain"),
     ],
     "Mixing: in max, weights of each value of a context": [(SPECIALISTS, r"SHARE: f32 = .*;", "SHARE: f32 = 0.0;")],
     "Mixing: in max, corrections behind": [

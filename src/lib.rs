@@ -41,15 +41,14 @@ mod parallel;
 #[cfg(feature = "encoder")]
 mod partition;
 mod passes;
-mod profile;
 #[cfg(feature = "render")]
 pub mod render;
-mod scene;
 #[cfg(feature = "encoder")]
 mod simplify;
 #[cfg(feature = "encoder")]
 mod thinning;
 
+pub use bitstream::profile::Profile;
 pub use decoder::{
     AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Placing, Step, StreamInfo,
     TrailingInfo, TrailingKind, Update, decode,
@@ -65,4 +64,3 @@ pub use mesh::repair::RepairReport;
 pub use mesh::{MeshError, TriMesh};
 #[cfg(feature = "encoder")]
 pub use partition::{Optimize, Partition};
-pub use profile::Profile;

@@ -1,7 +1,7 @@
 //! From bytes to chunks: what a stream announces, and where its passes begin.
 
-use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, Frame, NextPass};
+use crate::bitstream::chunk_index::Announced;
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::{Action, Grid, Pass, Provenance};
 use crate::bitstream::pass_table::{self, BadTable};

@@ -1,17 +1,17 @@
 //! What stands before the passes: header chunks in, [`StreamInfo`] out (`format/SPEC.md`, section 4).
 
-use super::attributes;
-use super::forecast;
 use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, StreamInfo, TrailingInfo};
 use super::refused::{malformed, out_of_order, skip};
-use crate::bitstream::announced::Announced;
+use super::{attributes, forecast};
 use crate::bitstream::budget::Budget;
 use crate::bitstream::chunk::kind;
+use crate::bitstream::chunk_index::Announced;
 use crate::bitstream::header::{Header, Provenance};
+use crate::bitstream::scene;
 use crate::limits::Limits;
 use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
-use crate::{DecodeError, Profile, scene};
+use crate::{DecodeError, Profile};
 
 /// Whether the decoder knows what stands beside the surface. Without that all of it is skipped as chunks that nobody
 /// knows, and the compiler leaves out what would read it.

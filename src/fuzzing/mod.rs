@@ -4,8 +4,8 @@
 
 mod chunks;
 
-use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
+use crate::bitstream::chunk_index::Announced;
 use crate::bitstream::header::{self, Action, Grid, Header, Pass};
 use crate::bitstream::mixer::Mixing;
 use crate::bitstream::mixture::Mixture;

@@ -1,6 +1,6 @@
 //! How a stream is coded: size against speed.
 
-use crate::bitstream::mixer::Mixing;
+use super::mixer::Mixing;
 
 /// What codes the passes. All profiles of a mesh decode to the same meshes, vertex by vertex and triangle by
 /// triangle.

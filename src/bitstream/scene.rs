@@ -1,10 +1,10 @@
 //! Chunks `n` and `m` (`format/SPEC.md`, sections 4.6 and 4.7): the meshes of a scene and where they stand; how
 //! materials look.
 
-use crate::bitstream::budget::Budget;
-use crate::bitstream::bytes::Reader;
+use super::budget::Budget;
+use super::bytes::Reader;
 #[cfg(any(feature = "encoder", test))]
-use crate::bitstream::bytes::write_varint;
+use super::bytes::write_varint;
 use crate::mesh::{GltfMaterials, IDENTITY, Instance, SceneTable};
 
 const UNMOVED: u8 = 0;
