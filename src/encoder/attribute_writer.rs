@@ -1,7 +1,7 @@
 //! The values of attributes behind each pass.
 
-use super::analysis::Hierarchy;
 use super::attributes::Quantised;
+use super::coarsen::Hierarchy;
 use super::padded;
 use crate::bitstream::mixer::Mixing;
 use crate::bitstream::range_coder::RangeEncoder;

@@ -1,12 +1,11 @@
 //! What follows the last pass: everything of the mesh that the surface on the grid does not tell.
 
-use super::attributes;
+use super::canonical_order::Ordered;
+use super::number_format::cheapest_scale;
 use super::options::EncodeOptions;
-use super::order::Ordered;
-use super::scale::cheapest_scale;
-use super::signatures::Signatures;
+use super::tie_break::Signatures;
 use super::values::ExactValues;
-use super::{expect_sound, padded};
+use super::{attributes, expect_sound, padded};
 use crate::TriMesh;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::{Grid, MAX_VERTICES_PER_BYTE};
@@ -15,13 +14,12 @@ use crate::decoder::assemble::Extras;
 use crate::mesh::has_three_vertices;
 use crate::mesh::surface::turns;
 use crate::morton::morton;
-use crate::passes::GridMesh;
 use crate::passes::attribute::Rows;
-use crate::passes::exact;
 use crate::passes::ladder::Ladder;
 use crate::passes::loose::{self, Loose};
 use crate::passes::order::{self, Order};
 use crate::passes::values::Elements;
+use crate::passes::{GridMesh, exact};
 use bitvec::vec::BitVec;
 
 /// Glued vertices are never removed unless they are a larger share of all: the base would be too large.

@@ -1,12 +1,12 @@
 //! Up the levels: the decoder's own steps, with the truth at hand.
 
-use super::analysis::{ANALYSIS_SHARE, Hierarchy};
 use super::attribute_writer::AttributeWriter;
 use super::attributes::Quantised;
+use super::coarsen::{ANALYSIS_SHARE, Hierarchy};
 use super::compensation::{Fitter, Point};
 use super::options::Progress;
+use super::patch_search::{Found, Names, Scout};
 use super::schedule::{Schedule, Step};
-use super::scout::{Found, Names, Scout};
 use super::trailing::{Exact, Written};
 use super::{earnings, expect_sound, padded};
 use crate::Profile;

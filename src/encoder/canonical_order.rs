@@ -1,7 +1,7 @@
 //! An order of vertices and triangles that does not depend on the file: encoding the same mesh in another
 //! order, or what a decoder made of its stream, gives the same bytes.
 
-use super::signatures::Signatures;
+use super::tie_break::Signatures;
 use super::ties::Ties;
 use crate::TriMesh;
 use crate::bitstream::header::Grid;
@@ -105,7 +105,7 @@ fn turned(t: [u32; 3], face: u32) -> ([u32; 3], u32) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::signatures::mix;
+    use super::super::tie_break::mix;
     use super::*;
 
     /// Triangles in cells of each vertex and the order of equal cells: what the bytes depend on.
