@@ -24,7 +24,7 @@ TARGET = ROOT / "target" / "ablation"
 SHARES = [0.05, 0.1, 0.2, 0.5]
 
 GUESS = "src/passes/guess.rs"
-SPECIALISTS = "src/bitstream/specialists.rs"
+SPECIALISTS = "src/entropy/specialists.rs"
 PARTITION = "src/partition.rs"
 THINNING = "src/thinning.rs"
 # What is switched off: file, words, other words.
@@ -53,7 +53,7 @@ PARTS = {
     "Densities: experts weighed by how they did": [(GUESS, r"TRUST_RATE: f32 = .*;", "TRUST_RATE: f32 = 0.0;")],
     "Densities: scales learnt on the way": [(GUESS, r"SCALE_RATE: f32 = .*;", "SCALE_RATE: f32 = 0.0;")],
     "Residuals: the density as an input of the mixers": [
-        ("src/bitstream/residual.rs", r"\[tables\.stretch_real\([^\]]*\)\]", "[]"),
+        ("src/entropy/residual.rs", r"\[tables\.stretch_real\([^\]]*\)\]", "[]"),
     ],
     "Mixing: what size adds, by max": [
         ("src/bitstream/profile.rs", r"Profile::Max => Mixing::Specialised", "Profile::Max => Mixing::Plain"),

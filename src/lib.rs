@@ -18,6 +18,7 @@ mod descent;
 pub mod descriptors;
 #[cfg(feature = "encoder")]
 mod encoder;
+mod entropy;
 mod error;
 #[cfg(feature = "experiment")]
 pub mod experiment;

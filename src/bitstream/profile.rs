@@ -1,6 +1,6 @@
 //! How a stream is coded: size against speed.
 
-use super::mixer::Mixing;
+use crate::entropy::context_mixer::Mixing;
 
 /// What codes the passes. All profiles of a mesh decode to the same meshes, vertex by vertex and triangle by
 /// triangle.

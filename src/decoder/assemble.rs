@@ -7,7 +7,7 @@ use super::frame::TrailingKind;
 use super::refused::Refused;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::Grid;
-use crate::bitstream::range_coder::RangeDecoder;
+use crate::entropy::range_coder::RangeDecoder;
 use crate::limits::Limits;
 use crate::mesh::surface::turns;
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, has_three_vertices};

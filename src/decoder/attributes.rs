@@ -2,8 +2,8 @@
 
 use super::frame::PassInfo;
 use crate::bitstream::header::Action;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeState};
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeState};
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Values};
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
 use crate::passes::attribute::{Brought, Coding, Declaration, Declarations, Desk, Layer, Rows};

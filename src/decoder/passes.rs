@@ -3,8 +3,8 @@
 use super::frame::{PassInfo, PassKind};
 use super::running::Running;
 use crate::bitstream::header::Action;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::RangeDecoder;
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::RangeDecoder;
 use crate::limits::Limits;
 use crate::mesh::Surface;
 use crate::passes::connectivity::ConnectivityModels;

@@ -3,8 +3,8 @@
 use super::attributes::Quantised;
 use super::coarsen::Hierarchy;
 use super::padded;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::RangeEncoder;
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::{Domain, NO_ROW};
 use crate::passes::GridMesh;
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;

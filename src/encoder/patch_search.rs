@@ -2,8 +2,8 @@
 //! coordinates, and the encoder knows where the vertices will be.
 
 use super::expect_sound;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::{BitCoder, RangeEncoder};
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::{BitCoder, RangeEncoder};
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::passes::GridMesh;

@@ -3,7 +3,7 @@
 use super::attributes::{Quantised, QuantisedAttribute};
 use super::expect_sound;
 use super::number_format::cheapest_scale;
-use crate::bitstream::range_coder::RangeEncoder;
+use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::{Attribute, Attributes, NO_ROW, Values};
 use crate::passes::attribute::Declaration;
 use crate::passes::ladder::{Ladder, Scale};

@@ -4,9 +4,9 @@
 use super::placement::Placement;
 use super::work::Work;
 use super::{GridMesh, Malformed};
-use crate::bitstream::mixer::{MixedBit, Mixing, PlainBits};
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::tables::Tables;
+use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::tables::Tables;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use std::collections::{HashMap, VecDeque};
@@ -393,7 +393,7 @@ fn rotate(corner: u32, steps: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
+    use crate::entropy::range_coder::{RangeDecoder, RangeEncoder};
 
     fn round_trip(triangles: &[[u32; 3]], num_vertices: usize) -> usize {
         let surface = Surface::from_triangles(triangles.to_vec(), num_vertices).unwrap();

@@ -6,9 +6,9 @@ use super::patch::Patches;
 use super::surroundings::Surroundings;
 use super::work::Work;
 use super::{EXHAUSTED, GridMesh, Malformed};
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::residual::{Expectation, ResidualModel};
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::residual::{Expectation, ResidualModel};
 
 /// Adaptive models, kept from level to level.
 #[derive(Clone)]

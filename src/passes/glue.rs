@@ -3,8 +3,8 @@
 
 use super::numbers::Numbers;
 use super::{EXHAUSTED, GridMesh, Malformed};
-use crate::bitstream::mixer::PlainBits;
-use crate::bitstream::range_coder::BitCoder;
+use crate::entropy::context_mixer::PlainBits;
+use crate::entropy::range_coder::BitCoder;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 
 /// Candidates that have a context of their own.

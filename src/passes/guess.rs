@@ -2,9 +2,9 @@
 //! each with a scale that follows a linear model, weighed by how well they did.
 
 use super::surroundings::{NUM_CLASSES, Surroundings};
-use crate::bitstream::mixture::Mixture;
-pub(crate) use crate::bitstream::residual::NUM_KINDS;
-use crate::bitstream::tables::{exp2, index_below, log2};
+use crate::entropy::mixture::Mixture;
+pub(crate) use crate::entropy::residual::NUM_KINDS;
+use crate::entropy::tables::{exp2, index_below, log2};
 use crate::lanes::Lanes;
 use crate::lifting::affine::AffineFilter;
 use crate::lifting::consensus::{Consensus, Guesses, MAX_GUESSES};

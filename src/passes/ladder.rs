@@ -1,7 +1,7 @@
 //! Numbers on ladders: the floats or decimals that something may be, each with a whole number as its key
 //! (`format/SPEC.md`, section 7.8).
 
-use crate::bitstream::range_coder::PROBABILITY_ONE;
+use crate::entropy::range_coder::PROBABILITY_ONE;
 
 /// Which numbers all values of one kind are, such as the coordinates of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

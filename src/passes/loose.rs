@@ -4,7 +4,7 @@
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::bitstream::header::MAX_VERTICES_PER_BYTE;
-use crate::bitstream::range_coder::BitCoder;
+use crate::entropy::range_coder::BitCoder;
 
 /// Vertices behind those of the surface, and triangles behind its own.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

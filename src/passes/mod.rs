@@ -3,7 +3,7 @@
 //!
 //! The encoder hands the truth in as a `target`; the decoder has none and gets it back.
 //!
-//! [`BitCoder`]: crate::bitstream::range_coder::BitCoder
+//! [`BitCoder`]: crate::entropy::range_coder::BitCoder
 
 pub(crate) mod attribute;
 pub(crate) mod base;

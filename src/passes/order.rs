@@ -4,7 +4,7 @@
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::TriMesh;
-use crate::bitstream::range_coder::BitCoder;
+use crate::entropy::range_coder::BitCoder;
 use crate::mesh::CornersAt;
 
 /// Where the vertices and triangles of a mesh stand in the file.

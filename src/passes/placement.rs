@@ -8,11 +8,11 @@ use super::guess::VertexGuess;
 use super::placing_order::PlacingOrder;
 use super::surroundings::{Fringe, Surroundings};
 use super::work::Work;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::mixture::Mixture;
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, SIGN_CONTEXTS};
-use crate::bitstream::tables::log2;
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::mixture::Mixture;
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::residual::{CALLER_CONTEXTS, Expectation, SIGN_CONTEXTS};
+use crate::entropy::tables::log2;
 use crate::lanes::Lanes;
 
 /// Roughness of a vertex that was guessed from no neighbour.

@@ -5,9 +5,9 @@ use super::Malformed;
 use super::guess::{ACROSS, axis_order, slopes};
 use super::patch::{Patches, Star};
 use super::work::Work;
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::streams::stream;
-use crate::bitstream::tables::{index_below, log2, round_half_up};
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::streams::stream;
+use crate::entropy::tables::{index_below, log2, round_half_up};
 use crate::lanes::Lanes;
 use crate::mesh::surface::NO_CORNER;
 

@@ -4,9 +4,9 @@ use super::GridMesh;
 use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
 use super::surroundings::{NUM_CLASSES, Surroundings};
 use super::work::Work;
-use crate::bitstream::mixer::{MixedBit, Mixing};
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::tables::{Tables, index_below};
+use crate::entropy::context_mixer::{MixedBit, Mixing};
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::tables::{Tables, index_below};
 
 /// Buckets of the centre's distance from the boundary between the halves of a cell.
 const OFFSETS: usize = 32;

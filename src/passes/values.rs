@@ -8,8 +8,8 @@ use super::ladder::{Ladder, Scale};
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::bitstream::bytes::Reader;
-use crate::bitstream::mixer::PlainBits;
-use crate::bitstream::range_coder::BitCoder;
+use crate::entropy::context_mixer::PlainBits;
+use crate::entropy::range_coder::BitCoder;
 use crate::mesh::{MAX_COMPONENTS, NO_ROW, ScalarType, Values};
 use std::collections::HashMap;
 

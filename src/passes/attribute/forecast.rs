@@ -3,11 +3,11 @@
 use super::around::Around;
 use super::octahedron::{Octahedron, project};
 use super::rows::Rows;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::mixture::Mixture;
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::residual::{Expectation, NUM_KINDS, ResidualModel};
-use crate::bitstream::tables::{exp2, log2};
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::mixture::Mixture;
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::residual::{Expectation, NUM_KINDS, ResidualModel};
+use crate::entropy::tables::{exp2, log2};
 use crate::lanes::Lanes;
 use crate::lifting::filter::{Filter, sum};
 use crate::lifting::plane_fit::PlaneFit;

@@ -240,7 +240,7 @@ impl PlainBits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
+    use crate::entropy::range_coder::{RangeDecoder, RangeEncoder};
 
     #[test]
     fn a_context_that_tells_is_learnt() {

@@ -1,10 +1,10 @@
 //! Payloads of the profile *fast* (`format/SPEC.md`, section 6.6): decisions and symbols, sorted into
 //! streams by what is known of them, packed, and compressed all together.
 
-use super::bytes::Reader;
-#[cfg(any(feature = "encoder", test))]
-use super::bytes::write_varint;
 use super::range_coder::BitCoder;
+use crate::bitstream::bytes::Reader;
+#[cfg(any(feature = "encoder", test))]
+use crate::bitstream::bytes::write_varint;
 
 /// What is one bit, by what it is and its context.
 pub(crate) mod stream {

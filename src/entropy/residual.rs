@@ -3,7 +3,7 @@
 //! The prediction is a density: a centre and a scale. Its share of the mass on either side of each
 //! binary decision goes into the mixer beside the adaptive contexts, which correct its shape.
 
-use super::mixer::{MixedBit, Mixing};
+use super::context_mixer::{MixedBit, Mixing};
 use super::mixture::Mixture;
 use super::range_coder::{BitCoder, PROBABILITY_ONE};
 use super::tables::{Tables, index_below, round_half_up};
@@ -197,7 +197,7 @@ impl ResidualModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
+    use crate::entropy::range_coder::{RangeDecoder, RangeEncoder};
     use crate::lanes::Lanes;
 
     fn expectation(origin: i32, centre: f32, scale: f32) -> Expectation {

@@ -1,7 +1,7 @@
 //! What the profile *max* adds to mixed bits (`format/SPEC.md`, section 6.3): each value of the first contexts
 //! has weights of its own, and corrects the probability that comes out.
 
-use super::mixer::{Counter, WeightSet};
+use super::context_mixer::{Counter, WeightSet};
 use super::range_coder::PROBABILITY_ONE;
 use super::tables::Tables;
 use crate::lanes::Lanes;
