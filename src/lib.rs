@@ -11,8 +11,6 @@ compile_error!(
 mod bitstream;
 mod decoder;
 #[cfg(feature = "encoder")]
-pub mod decomposition;
-#[cfg(feature = "encoder")]
 mod descent;
 #[cfg(feature = "encoder")]
 pub mod descriptors;
@@ -37,6 +35,8 @@ pub mod mesh;
 pub mod metrics;
 #[cfg(feature = "encoder")]
 mod morton;
+#[cfg(feature = "encoder")]
+pub mod multiresolution;
 
 mod parallel;
 #[cfg(feature = "encoder")]

@@ -7,8 +7,8 @@ use super::output::Destination;
 use super::quantity::counted;
 use super::ui::Ui;
 use anyhow::Context;
-use lwc::decomposition::Edition;
 use lwc::io::{Format, WriteError};
+use lwc::multiresolution::Edition;
 use std::io::{self, Read, Write};
 use std::path::PathBuf;
 

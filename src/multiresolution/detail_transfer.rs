@@ -1,7 +1,7 @@
 //! Details of a stream put back on a coarse mesh that somebody has changed.
 
+use super::hierarchy::{StreamTower, Tower};
 use super::lift::vertex_normals;
-use super::tower::{StreamTower, Tower};
 use super::{Decomposition, Prediction};
 use crate::encoder::quantise::unit_near;
 use crate::mesh::has_three_vertices;

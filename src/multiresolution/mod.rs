@@ -23,7 +23,7 @@
 //! Every step is undone exactly, up to the rounding of the arithmetic.
 //!
 //! ```
-//! use lwc::decomposition::{Decomposition, Options};
+//! use lwc::multiresolution::{Decomposition, Options};
 //!
 //! # let positions = (0..400).map(|i| [f64::from(i % 20), f64::from(i / 20), f64::from(i * i % 7) * 0.1]);
 //! # let cells = (0..380).filter(|i| i % 20 < 19);
@@ -38,20 +38,20 @@
 //! ```
 
 mod denoise;
-mod edit;
+mod detail_transfer;
+mod hierarchy;
 mod lift;
-mod tower;
 mod weights;
 
 pub use denoise::{Threshold, denoised};
-pub use edit::{EditError, Edition};
+pub use detail_transfer::{EditError, Edition};
 
 use crate::descriptors::{Descriptor, Window};
 use crate::partition::Partition;
 use crate::{EncodeError, TriMesh};
 use glam::DVec3;
+use hierarchy::{MeshTower, Tower};
 use lift::Split;
-use tower::{MeshTower, Tower};
 
 /// How the position of an odd vertex is guessed from its ring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

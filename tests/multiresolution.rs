@@ -7,7 +7,7 @@ mod common;
 
 use common::kinds::every_kind;
 use common::*;
-use lwc::decomposition::{Decomposition, EditError, Edition, Options, Prediction, denoised};
+use lwc::multiresolution::{Decomposition, EditError, Edition, Options, Prediction, denoised};
 use lwc::{DecodeOptions, EncodeOptions, Limits, Partition, TriMesh};
 
 const WAYS: [(Prediction, bool); 4] = [

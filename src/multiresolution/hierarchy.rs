@@ -1,17 +1,16 @@
 //! The connectivity of all levels, vertices numbered coarse before fine.
 
 use super::Options;
-use super::edit::EditError;
+use super::detail_transfer::EditError;
 use crate::decoder::{Decoder, PassKind};
 use crate::descent::{Descent, Settings};
-use crate::descriptors;
 use crate::encoder::quantise::{LEGALITY_BITS, quantise};
 use crate::levels::Level;
 use crate::limits::Limits;
 use crate::mesh::Surface;
 use crate::mesh::repair::{Repaired, repair};
 use crate::partition::{Geometry, Optimize};
-use crate::{EncodeError, TriMesh};
+use crate::{EncodeError, TriMesh, descriptors};
 use bitvec::vec::BitVec;
 
 /// Triangles of M^0 … M^L. M^k has the vertices below its number.
