@@ -23,14 +23,14 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TARGET = ROOT / "target" / "ablation"
 SHARES = [0.05, 0.1, 0.2, 0.5]
 
-GUESS = "src/passes/guess.rs"
+GUESS = "src/passes/coordinate_prediction.rs"
 SPECIALISTS = "src/entropy/specialists.rs"
 PARTITION = "src/partition.rs"
 THINNING = "src/thinning.rs"
 # What is switched off: file, words, other words.
 PARTS = {
     "Prediction: true outer vertices, not those of the coarse mesh": [
-        ("src/passes/surroundings.rs", r"if \(tip as usize\) < vertex \{", "if (tip as usize) < vertex && coarse == NO_CORNER {"),
+        ("src/passes/coding_context.rs", r"if \(tip as usize\) < vertex \{", "if (tip as usize) < vertex && coarse == NO_CORNER {"),
     ],
     "Prediction: guesses moved along the tangent plane": [
         (GUESS, r"let slopes = slopes\(normal, axes\);", "let slopes = slopes(Lanes::ZERO, axes);"),

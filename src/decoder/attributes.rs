@@ -8,7 +8,7 @@ use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Values};
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
 use crate::passes::attribute::{Brought, Coding, Declaration, Declarations, Desk, Layer, Rows};
 use crate::passes::patch::Patches;
-use crate::passes::work::Work;
+use crate::passes::work_budget::Work;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
 
 /// What is known of all attributes.

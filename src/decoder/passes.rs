@@ -11,7 +11,7 @@ use crate::passes::connectivity::ConnectivityModels;
 use crate::passes::coordinates::CoordinateModels;
 use crate::passes::patch::{Patches, StarBuilder};
 use crate::passes::refine::RefineModels;
-use crate::passes::work::Work;
+use crate::passes::work_budget::Work;
 use crate::passes::{GridMesh, Malformed};
 use crate::{DecodeError, Profile};
 

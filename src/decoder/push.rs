@@ -2,21 +2,20 @@
 
 use super::assemble::{Beside, Extras};
 use super::attributes::{self, AttributeDecoder};
-use super::environment;
-use super::forecast;
 use super::frame::{Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
 use super::head::{ASSETS, Head, Source};
 use super::level_mesh::LevelMesh;
 use super::passes::PassDecoder;
 use super::refused::{malformed, out_of_order, skip};
 use super::running::Running;
+use super::{environment, forecast};
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::compensation::Compensation;
 use crate::limits::Limits;
 use crate::mesh::Attributes;
 use crate::passes::GridMesh;
 use crate::passes::patch::Patches;
-use crate::passes::work::Work;
+use crate::passes::work_budget::Work;
 use crate::{DecodeError, Profile, TriMesh};
 use std::collections::VecDeque;
 use std::ops::Range;

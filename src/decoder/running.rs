@@ -8,12 +8,12 @@ use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeState};
 use crate::entropy::streams::StreamReader;
 use crate::passes::base::Grower;
+use crate::passes::base_positions::Placement;
 use crate::passes::connectivity::PausedWalk;
+use crate::passes::coordinates_fast::Located;
 use crate::passes::patch::{Patches, StarBuilder};
-use crate::passes::placement::Placement;
-use crate::passes::plain::Located;
-use crate::passes::work::{SWEPT_PER_UNIT, Work};
-use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, plain, refine};
+use crate::passes::work_budget::{SWEPT_PER_UNIT, Work};
+use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, coordinates_fast, refine};
 
 /// Whether the decoder reads the profile *fast*. Without it the compiler leaves out what would.
 const STREAMS: bool = Profile::Fast.is_supported();
@@ -179,7 +179,9 @@ impl Running {
                             let GridMesh { positions, roughness, .. } = &mut *mesh;
                             let mut known = Located { positions, roughness };
                             let limit = 1 << pass.precision;
-                            plain::code_vertex(coder, &mut known, &patches, next, star, limit, [0; 3])?;
+                            coordinates_fast::code_vertex(
+                                coder, &mut known, &patches, next, star, limit, [0; 3],
+                            )?;
                         }
                         next += 1;
                     }
@@ -216,7 +218,7 @@ impl Running {
                 }
                 Stage::Refine(mut next) => {
                     let is_over = if B::HAS_STREAMS {
-                        plain::refine_some(coder, &mut mesh.positions, &mut next, None, work)
+                        coordinates_fast::refine_some(coder, &mut mesh.positions, &mut next, None, work)
                     } else {
                         refine::code_some(coder, &mut models.refine, mesh, &mut next, None, work)
                     };

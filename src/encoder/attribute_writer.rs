@@ -10,7 +10,7 @@ use crate::passes::GridMesh;
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
 use crate::passes::attribute::{Brought, Desk, Layer, Rows, Truth};
 use crate::passes::patch::{Patches, Star};
-use crate::passes::work::Work;
+use crate::passes::work_budget::Work;
 use crate::simplify::LevelRecord;
 use crate::simplify::record::Removed;
 

@@ -1,6 +1,6 @@
 //! Which numbers the values of a kind all are: decimals of so many digits, or any floats.
 
-use crate::passes::ladder::{Ladder, Scale};
+use crate::passes::float_values::{Ladder, Scale};
 
 /// Numbers that are looked at first.
 const SAMPLES: usize = 2000;

@@ -15,8 +15,8 @@ use crate::mesh::has_three_vertices;
 use crate::mesh::surface::turns;
 use crate::morton::morton;
 use crate::passes::attribute::Rows;
-use crate::passes::ladder::Ladder;
-use crate::passes::loose::{self, Loose};
+use crate::passes::float_values::Ladder;
+use crate::passes::isolated_and_degenerate::{self, Loose};
 use crate::passes::order::{self, Order};
 use crate::passes::values::Elements;
 use crate::passes::{GridMesh, exact};
@@ -193,8 +193,14 @@ impl Exact<'_> {
 
     fn write_loose(&self, loose: &Loose, num_joined: usize) -> Vec<u8> {
         let mut coder = RangeEncoder::new();
-        let counts = expect_sound(loose::code_counts(&mut coder, 0, Some(loose)));
-        expect_sound(loose::code(&mut coder, self.grid.precision, num_joined, counts, Some(loose)));
+        let counts = expect_sound(isolated_and_degenerate::code_counts(&mut coder, 0, Some(loose)));
+        expect_sound(isolated_and_degenerate::code(
+            &mut coder,
+            self.grid.precision,
+            num_joined,
+            counts,
+            Some(loose),
+        ));
         padded(coder.finish(), counts[0] + counts[1], u64::from(MAX_VERTICES_PER_BYTE))
     }
 

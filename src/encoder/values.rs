@@ -6,7 +6,7 @@ use super::number_format::cheapest_scale;
 use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::{Attribute, Attributes, NO_ROW, Values};
 use crate::passes::attribute::Declaration;
-use crate::passes::ladder::{Ladder, Scale};
+use crate::passes::float_values::{Ladder, Scale};
 use crate::passes::values::{self, Elements, Ladders, Truth};
 use bitvec::vec::BitVec;
 

@@ -20,11 +20,11 @@ use crate::entropy::streams::StreamWriter;
 use crate::passes::GridMesh;
 use crate::passes::base::{self, BaseTarget};
 use crate::passes::coordinates::{self, CoordinateModels};
-use crate::passes::glue::{self, GlueModels};
+use crate::passes::coordinates_fast::{self, Located};
 use crate::passes::patch::{Patches, Star, StarBuilder};
-use crate::passes::plain::{self, Located};
 use crate::passes::refine::{self, RefineModels};
-use crate::passes::work::Work;
+use crate::passes::stitching::{self, GlueModels};
+use crate::passes::work_budget::Work;
 use crate::simplify::LevelRecord;
 use bitvec::vec::BitVec;
 
@@ -286,7 +286,7 @@ impl<'a> PassWriter<'a> {
         }
         let names: Vec<u32> = vertex_source.iter().map(|&v| self.source[v as usize]).collect();
         let mut coder = RangeEncoder::new();
-        expect_sound(glue::code(&mut coder, &mut self.glue, &self.mesh, &mut self.roots, Some(&names)));
+        expect_sound(stitching::code(&mut coder, &mut self.glue, &self.mesh, &mut self.roots, Some(&names)));
         Some(coder.finish())
     }
 
@@ -305,7 +305,13 @@ impl<'a> PassWriter<'a> {
                 let mut coder = StreamWriter::new(0);
                 let positions = &mut self.mesh.positions;
                 positions.iter_mut().flatten().for_each(|c| *c *= 2);
-                plain::refine_some(&mut coder, positions, &mut 0, Some(&target), &mut Work::unlimited());
+                coordinates_fast::refine_some(
+                    &mut coder,
+                    positions,
+                    &mut 0,
+                    Some(&target),
+                    &mut Work::unlimited(),
+                );
                 coder.finish()
             }
         };
@@ -331,7 +337,9 @@ impl<'a> PassWriter<'a> {
         self.restore(record, &patches, &odd, names, |mesh, patches, j, star| {
             let GridMesh { positions, roughness, .. } = mesh;
             let mut known = Located { positions, roughness };
-            expect_sound(plain::code_vertex(&mut coder, &mut known, patches, j, star, limit, wanted[j]));
+            expect_sound(coordinates_fast::code_vertex(
+                &mut coder, &mut known, patches, j, star, limit, wanted[j],
+            ));
         });
         self.finish_split(&patches, coder.finish(), names);
     }

@@ -1,8 +1,8 @@
 //! Triangles of the base mesh M⁰ (`format/SPEC.md`, section 7.1), grown over their edges: around one vertex of the boundary
-//! until it is enclosed, then around the next one. Where the vertices lie follows in [`placement`](super::placement).
+//! until it is enclosed, then around the next one. Where the vertices lie follows in [`base_positions`](super::base_positions).
 
-use super::placement::Placement;
-use super::work::Work;
+use super::base_positions::Placement;
+use super::work_budget::Work;
 use super::{GridMesh, Malformed};
 use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
 use crate::entropy::range_coder::BitCoder;

@@ -3,7 +3,7 @@
 
 use super::patch::{CLOSED, Patches};
 use super::polygon::{FITS, Fit, Polygon, Triangle};
-use super::work::{SWEPT_PER_UNIT, Work};
+use super::work_budget::{SWEPT_PER_UNIT, Work};
 use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
 use crate::entropy::range_coder::BitCoder;

@@ -1,10 +1,10 @@
 //! Wavelet coefficients: where each odd vertex lies, relative to its prediction
 //! (`format/SPEC.md`, section 7.4).
 
-use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
+use super::coding_context::Surroundings;
+use super::coordinate_prediction::{GuessModels, NUM_KINDS, VertexGuess, log_level};
 use super::patch::Patches;
-use super::surroundings::Surroundings;
-use super::work::Work;
+use super::work_budget::Work;
 use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::BitCoder;

@@ -1,6 +1,6 @@
 //! Coordinates bit for bit (`format/SPEC.md`, section 7.8): which of the numbers that lie in a cell it is.
 
-use super::ladder::{Ladder, Scale};
+use super::float_values::{Ladder, Scale};
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::bitstream::header::Grid;

@@ -1,9 +1,9 @@
 //! One more bit of precision for every vertex (`format/SPEC.md`, section 7.5).
 
 use super::GridMesh;
-use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
-use super::surroundings::{NUM_CLASSES, Surroundings};
-use super::work::Work;
+use super::coding_context::{NUM_CLASSES, Surroundings};
+use super::coordinate_prediction::{GuessModels, NUM_KINDS, VertexGuess, log_level};
+use super::work_budget::Work;
 use crate::entropy::context_mixer::{MixedBit, Mixing};
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::tables::{Tables, index_below};

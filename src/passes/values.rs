@@ -4,7 +4,7 @@ use super::attribute::declaration::bits_of;
 use super::attribute::octahedron::Octahedron;
 use super::attribute::{Coding, Declaration, Rows};
 use super::exact::{ExactCoder, Keyed};
-use super::ladder::{Ladder, Scale};
+use super::float_values::{Ladder, Scale};
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::bitstream::bytes::Reader;

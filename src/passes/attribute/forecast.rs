@@ -11,7 +11,7 @@ use crate::entropy::tables::{exp2, log2};
 use crate::lanes::Lanes;
 use crate::lifting::filter::{Filter, sum};
 use crate::lifting::plane_fit::PlaneFit;
-use crate::passes::guess::{
+use crate::passes::coordinate_prediction::{
     FLOOR, MAX_CENTRE, NUM_CUES, SHARPNESS_FACTOR, ScaleModel, TRUST_LEVELS, TRUST_RATE, log_level,
 };
 

@@ -12,7 +12,7 @@ use crate::lanes::Lanes;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::mesh::{Domain, NO_ROW, Semantic, Surface};
 use crate::passes::patch::Patches;
-use crate::passes::work::Work;
+use crate::passes::work_budget::Work;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
 
 /// Neighbouring rows that a row may repeat.

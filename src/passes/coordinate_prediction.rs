@@ -1,7 +1,7 @@
 //! From a neighbourhood to the density of each coordinate (`format/SPEC.md`, section 8.3): experts,
 //! each with a scale that follows a linear model, weighed by how well they did.
 
-use super::surroundings::{NUM_CLASSES, Surroundings};
+use super::coding_context::{NUM_CLASSES, Surroundings};
 use crate::entropy::mixture::Mixture;
 pub(crate) use crate::entropy::residual::NUM_KINDS;
 use crate::entropy::tables::{exp2, index_below, log2};

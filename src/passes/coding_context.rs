@@ -1,8 +1,8 @@
 //! The known positions around a vertex that is coded now (`format/SPEC.md`, section 8.1).
 
 use super::GridMesh;
+use super::base_traversal::PlacingOrder;
 use super::patch::Patches;
-use super::placing_order::PlacingOrder;
 use crate::lanes::Lanes;
 use crate::lifting::neighbourhood::{Neighbourhood, Outlook, PartOfRing};
 use crate::mesh::surface::{NO_CORNER, next, prev};

@@ -2,9 +2,9 @@
 //! ring and coarse tips, differences as symbols.
 
 use super::Malformed;
-use super::guess::{ACROSS, axis_order, slopes};
+use super::coordinate_prediction::{ACROSS, axis_order, slopes};
 use super::patch::{Patches, Star};
-use super::work::Work;
+use super::work_budget::Work;
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::streams::stream;
 use crate::entropy::tables::{index_below, log2, round_half_up};

@@ -3,11 +3,11 @@
 
 use super::Malformed;
 use super::base::Base;
+use super::base_traversal::PlacingOrder;
+use super::coding_context::{Fringe, Surroundings};
+use super::coordinate_prediction::VertexGuess;
 use super::coordinates::CoordinateModels;
-use super::guess::VertexGuess;
-use super::placing_order::PlacingOrder;
-use super::surroundings::{Fringe, Surroundings};
-use super::work::Work;
+use super::work_budget::Work;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::mixture::Mixture;
 use crate::entropy::range_coder::BitCoder;
