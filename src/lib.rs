@@ -28,7 +28,6 @@ pub mod io;
 mod lanes;
 #[cfg(feature = "encoder")]
 mod levels;
-mod lifting;
 mod limits;
 pub mod mesh;
 #[cfg(feature = "metrics")]
@@ -37,6 +36,7 @@ pub mod metrics;
 mod morton;
 #[cfg(feature = "encoder")]
 pub mod multiresolution;
+mod prediction;
 
 mod parallel;
 #[cfg(feature = "encoder")]

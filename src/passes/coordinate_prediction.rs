@@ -6,9 +6,9 @@ use crate::entropy::mixture::Mixture;
 pub(crate) use crate::entropy::residual::NUM_KINDS;
 use crate::entropy::tables::{exp2, index_below, log2};
 use crate::lanes::Lanes;
-use crate::lifting::affine::AffineFilter;
-use crate::lifting::consensus::{Consensus, Guesses, MAX_GUESSES};
-use crate::lifting::neighbourhood::{NUM_FEATURES, Outlook};
+use crate::prediction::ring_context::{NUM_FEATURES, Outlook};
+use crate::prediction::rls_affine::AffineFilter;
+use crate::prediction::robust_estimate::{Consensus, Guesses, MAX_GUESSES};
 
 /// Kind of the coordinate closest to the normal.
 pub(crate) const ACROSS: usize = 2;

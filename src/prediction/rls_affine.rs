@@ -1,7 +1,7 @@
 //! Affine prediction with weights learnt on the way: recursive least squares with forgetting
 //! (`format/SPEC.md`, section 8.2).
 
-use super::neighbourhood::NUM_FEATURES;
+use super::ring_context::NUM_FEATURES;
 
 /// Weights before anything is learnt: on a smooth surface half way towards the parallelograms.
 const INITIAL_WEIGHTS: [f32; NUM_FEATURES] = [0.5, 0.35, 0.0];
