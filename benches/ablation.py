@@ -25,8 +25,8 @@ SHARES = [0.05, 0.1, 0.2, 0.5]
 
 GUESS = "src/passes/coordinate_prediction.rs"
 SPECIALISTS = "src/entropy/specialists.rs"
-PARTITION = "src/partition.rs"
-THINNING = "src/thinning.rs"
+PARTITION = "src/simplification/partition.rs"
+THINNING = "src/simplification/vertex_selection.rs"
 # What is switched off: file, words, other words.
 PARTS = {
     "Prediction: true outer vertices, not those of the coarse mesh": [
@@ -74,7 +74,7 @@ PARTS = {
         (PARTITION, r"order\.into_iter\(\)\.rev\(\)\.partition", "order.into_iter().partition"),
     ],
     "Selection: next to what is removed already": [
-        ("src/simplify/packing.rs", r"const WEIGHT: f64 = 0\.7;", "const WEIGHT: f64 = 0.0;"),
+        ("src/simplification/bucket_queue.rs", r"const WEIGHT: f64 = 0\.7;", "const WEIGHT: f64 = 0.0;"),
     ],
     "Schedule: precision that follows the error": [
         ("src/encoder/schedule.rs", r"let base_precision = if num_levels > 0 .*;", "let base_precision = precision;"),

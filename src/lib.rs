@@ -11,8 +11,6 @@ compile_error!(
 mod bitstream;
 mod decoder;
 #[cfg(feature = "encoder")]
-mod descent;
-#[cfg(feature = "encoder")]
 pub mod descriptors;
 #[cfg(feature = "encoder")]
 mod encoder;
@@ -26,8 +24,6 @@ pub mod fuzzing;
 #[cfg(feature = "io")]
 pub mod io;
 mod lanes;
-#[cfg(feature = "encoder")]
-mod levels;
 mod limits;
 pub mod mesh;
 #[cfg(feature = "metrics")]
@@ -37,17 +33,13 @@ mod morton;
 #[cfg(feature = "encoder")]
 pub mod multiresolution;
 mod prediction;
+#[cfg(feature = "encoder")]
+mod simplification;
 
 mod parallel;
-#[cfg(feature = "encoder")]
-mod partition;
 mod passes;
 #[cfg(feature = "render")]
 pub mod render;
-#[cfg(feature = "encoder")]
-mod simplify;
-#[cfg(feature = "encoder")]
-mod thinning;
 
 pub use bitstream::profile::Profile;
 pub use decoder::{
@@ -64,4 +56,4 @@ pub use limits::Limits;
 pub use mesh::repair::RepairReport;
 pub use mesh::{MeshError, TriMesh};
 #[cfg(feature = "encoder")]
-pub use partition::{Optimize, Partition};
+pub use simplification::partition::{Optimize, Partition};

@@ -11,8 +11,8 @@ use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
 use crate::passes::attribute::{Brought, Desk, Layer, Rows, Truth};
 use crate::passes::patch::{Patches, Star};
 use crate::passes::work_budget::Work;
-use crate::simplify::LevelRecord;
-use crate::simplify::record::Removed;
+use crate::simplification::LevelRecord;
+use crate::simplification::record::Removed;
 
 /// The decoder's layers, and what they should become.
 pub(super) struct AttributeWriter<'a> {

@@ -8,7 +8,7 @@ use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, V
 use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};
-use crate::simplify::Seams;
+use crate::simplification::Seams;
 use crate::{EncodeError, TriMesh};
 use std::collections::HashMap;
 use std::sync::Arc;

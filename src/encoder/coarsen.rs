@@ -2,11 +2,11 @@
 
 use super::options::{Attempt, EncodeOptions, Progress};
 use crate::TriMesh;
-use crate::descent::{Descent, Settings};
 use crate::descriptors::{self, Features};
 use crate::mesh::Surface;
-use crate::partition::Geometry;
-use crate::simplify::{LevelRecord, Seams};
+use crate::simplification::hierarchy::{Descent, Settings};
+use crate::simplification::partition::Geometry;
+use crate::simplification::{LevelRecord, Seams};
 use bitvec::vec::BitVec;
 
 /// Share of an encoder's time that goes into the analysis.

@@ -1,8 +1,8 @@
 //! What the caller may choose, and what comes back.
 
-use crate::descent::MAX_LEVELS;
 use crate::descriptors::{Descriptor, FeatureChoice, Window};
 use crate::mesh::repair::RepairReport;
+use crate::simplification::hierarchy::MAX_LEVELS;
 use crate::{EncodeError, Optimize, Partition, Profile, StreamInfo};
 
 /// How to encode. `Default` gives the defaults named below.

@@ -9,7 +9,7 @@ use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::passes::GridMesh;
 use crate::passes::connectivity::{self, ConnectivityModels, ConnectivityTarget, NOT_IN_PATCH};
 use crate::passes::patch::Patches;
-use crate::simplify::LevelRecord;
+use crate::simplification::LevelRecord;
 use std::collections::HashMap;
 
 /// How the decoder's numbering maps to that of the full surface.

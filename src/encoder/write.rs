@@ -25,7 +25,7 @@ use crate::passes::patch::{Patches, Star, StarBuilder};
 use crate::passes::refine::{self, RefineModels};
 use crate::passes::stitching::{self, GlueModels};
 use crate::passes::work_budget::Work;
-use crate::simplify::LevelRecord;
+use crate::simplification::LevelRecord;
 use bitvec::vec::BitVec;
 
 /// Materials of at most this many bytes stand in front of the passes: the base mesh should not have to wait for
@@ -390,7 +390,7 @@ impl<'a> PassWriter<'a> {
 /// one is.
 fn name_faces(
     star: &Star,
-    removed: &crate::simplify::record::Removed,
+    removed: &crate::simplification::record::Removed,
     vertex_source: &[u32],
     face_source: &mut [u32],
 ) -> usize {

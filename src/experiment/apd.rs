@@ -1,7 +1,7 @@
 //! Average plane distance (eq. 34 of the paper).
 
 use crate::descriptors::symmetric::Sym3;
-use crate::simplify::LevelRecord;
+use crate::simplification::LevelRecord;
 use glam::DVec3;
 
 /// A plane is undetermined if the second eigenvalue is at most this part of the largest.

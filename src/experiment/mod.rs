@@ -23,12 +23,11 @@ pub use noise::Noise;
 
 use crate::descriptors::{self, Descriptor, Readings, Window};
 use crate::encoder::quantise::{LEGALITY_BITS, quantise};
-use crate::levels::Level;
 use crate::mesh::Surface;
 use crate::mesh::repair::{RepairReport, Repaired, repair};
-use crate::partition::{Geometry, by_score, remove_in_order};
-use crate::simplify::Seams;
-use crate::simplify::ShrinkingSurface;
+use crate::simplification::level::Level;
+use crate::simplification::partition::{Geometry, by_score, remove_in_order};
+use crate::simplification::{Seams, ShrinkingSurface};
 use crate::{EncodeError, TriMesh};
 use apd::average_plane_distance;
 use serde::{Deserialize, Serialize};

@@ -3,13 +3,13 @@
 use super::Options;
 use super::detail_transfer::EditError;
 use crate::decoder::{Decoder, PassKind};
-use crate::descent::{Descent, Settings};
 use crate::encoder::quantise::{LEGALITY_BITS, quantise};
-use crate::levels::Level;
 use crate::limits::Limits;
 use crate::mesh::Surface;
 use crate::mesh::repair::{Repaired, repair};
-use crate::partition::{Geometry, Optimize};
+use crate::simplification::hierarchy::{Descent, Settings};
+use crate::simplification::level::Level;
+use crate::simplification::partition::{Geometry, Optimize};
 use crate::{EncodeError, TriMesh, descriptors};
 use bitvec::vec::BitVec;
 

@@ -47,7 +47,7 @@ pub use denoise::{Threshold, denoised};
 pub use detail_transfer::{EditError, Edition};
 
 use crate::descriptors::{Descriptor, Window};
-use crate::partition::Partition;
+use crate::simplification::partition::Partition;
 use crate::{EncodeError, TriMesh};
 use glam::DVec3;
 use hierarchy::{MeshTower, Tower};

@@ -1,8 +1,8 @@
 //! What can be known of stars before their vertices are removed. None of the vertices is next to another: the
 //! removal of one changes nothing here for the others, so that all can be looked at in parallel.
 
-use super::hole::{HoleFiller, Prospect};
-use super::memory::ErrorMemory;
+use super::quadrics::ErrorMemory;
+use super::retriangulate::{HoleFiller, Prospect};
 use super::{ShrinkingSurface, Star};
 use rayon::prelude::*;
 

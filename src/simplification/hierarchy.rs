@@ -1,14 +1,14 @@
 //! From M^L down: level by level the descriptor ranks the vertices and the partition removes the odd ones.
 
+use super::canonical::Anchors;
+use super::level::Level;
+use super::partition::{Geometry, Optimize, Partition, Ranked, is_coarse, remove_level};
+use super::quadrics::ErrorMemory;
+use super::vertex_selection::{Saliency, Thinning};
+use super::{LevelRecord, Rings, Seams, ShrinkingSurface};
 use crate::TriMesh;
 use crate::descriptors::{Descriptor, Evaluation, Features, Window};
-use crate::levels::Level;
 use crate::mesh::Surface;
-use crate::partition::{Geometry, Optimize, Partition, Ranked, is_coarse, remove_level};
-use crate::simplify::canonical::Anchors;
-use crate::simplify::memory::ErrorMemory;
-use crate::simplify::{LevelRecord, Rings, Seams, ShrinkingSurface};
-use crate::thinning::{Saliency, Thinning};
 use bitvec::vec::BitVec;
 
 /// Most levels, whatever the wish.

@@ -1,17 +1,17 @@
 //! Odd and even: which vertices of a level are removed (Algorithm 1 of the paper), given one score
 //! per vertex.
 
-use crate::levels::Level;
-use crate::simplify::canonical::{Anchors, patch_order};
-use crate::simplify::collapse::CollapseTest;
-use crate::simplify::hole::HoleFiller;
-use crate::simplify::memory::ErrorMemory;
-use crate::simplify::outlook::Outlook;
-use crate::simplify::packing::{ClassQueue, PackingClasses};
-use crate::simplify::seams::{Demand, may_go};
-use crate::simplify::{LevelRecord, Rings, Seams, ShrinkingSurface, Star};
-pub use crate::thinning::Optimize;
-use crate::thinning::{Saliency, Thinning, score_keys};
+use super::bucket_queue::{ClassQueue, PackingClasses};
+use super::canonical::{Anchors, patch_order};
+use super::collapse::CollapseTest;
+use super::collapse_cost::Outlook;
+use super::level::Level;
+use super::quadrics::ErrorMemory;
+use super::retriangulate::HoleFiller;
+use super::seams::{Demand, may_go};
+pub use super::vertex_selection::Optimize;
+use super::vertex_selection::{Saliency, Thinning, score_keys};
+use super::{LevelRecord, Rings, Seams, ShrinkingSurface, Star};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 

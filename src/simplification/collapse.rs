@@ -2,7 +2,7 @@
 //! of the boundary and of the sides of faces).
 
 use super::geometry::{area_vector, is_same_side};
-use super::shrinking::{ShrinkingSurface, Star};
+use super::surface_editor::{ShrinkingSurface, Star};
 
 /// Scratch space of the tests.
 #[derive(Default)]

@@ -5,7 +5,7 @@
 use super::collapse::is_tetrahedral;
 use super::geometry::{area_vector, is_same_side};
 use super::seams::Demand;
-use super::shrinking::{ShrinkingSurface, Star};
+use super::surface_editor::{ShrinkingSurface, Star};
 use crate::lanes::Cell;
 use crate::mesh::ears::{Bytes, Ear, Hole, IN_ORDER, MAX_CORNERS, MAX_VALENCE};
 

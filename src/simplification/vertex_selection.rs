@@ -1,7 +1,7 @@
 //! Which vertices of a level may go: those of little saliency, the error of the best collapse, between half and twice
 //! as much by the rank of the descriptor.
 
-use crate::simplify::ShrinkingSurface;
+use super::ShrinkingSurface;
 use rayon::prelude::*;
 
 /// What the balanced partition gives up for what.

@@ -234,7 +234,7 @@ fn is_fan(ears: &[usize], target: usize, degree: usize) -> bool {
 mod tests {
     use super::*;
     use crate::mesh::Surface;
-    use crate::simplify::seams::Diagonal;
+    use crate::simplification::seams::Diagonal;
 
     #[test]
     fn a_vertex_stays_if_only_a_bad_hole_is_legal() {

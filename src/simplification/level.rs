@@ -1,9 +1,9 @@
 //! One level of a surface that shrinks, as a mesh without gaps.
 
+use super::ShrinkingSurface;
+use super::surface_editor::FREE;
 use crate::TriMesh;
 use crate::mesh::Surface;
-use crate::simplify::ShrinkingSurface;
-use crate::simplify::shrinking::FREE;
 use rayon::prelude::*;
 
 /// Triangles whose sides are added up by one thread.
