@@ -23,20 +23,17 @@ pub mod experiment;
 pub mod fuzzing;
 #[cfg(feature = "io")]
 pub mod io;
-mod lanes;
 mod limits;
 pub mod mesh;
 #[cfg(feature = "metrics")]
 pub mod metrics;
 #[cfg(feature = "encoder")]
-mod morton;
-#[cfg(feature = "encoder")]
 pub mod multiresolution;
 mod prediction;
 #[cfg(feature = "encoder")]
 mod simplification;
+mod util;
 
-mod parallel;
 mod passes;
 #[cfg(feature = "render")]
 pub mod render;

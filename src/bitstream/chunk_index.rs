@@ -1,10 +1,10 @@
 //! The chunks that belong to passes or follow the last one, announced before them (`format/SPEC.md`, section 4.4).
 
-use super::bytes::Reader;
-#[cfg(any(feature = "encoder", test))]
-use super::bytes::write_varint;
 use super::chunk::kind;
 use super::header::MAX_PASSES;
+use crate::util::bytes::Reader;
+#[cfg(any(feature = "encoder", test))]
+use crate::util::bytes::write_varint;
 
 /// Most chunks behind the last pass.
 const MAX_TRAILING: usize = 16;

@@ -1,8 +1,6 @@
 //! What a stream is made of: chunks, headers, the table of passes (`format/SPEC.md`, sections 3 and 4). Of meshes it
 //! knows scenes and materials only.
 
-pub(crate) mod budget;
-pub(crate) mod bytes;
 pub(crate) mod chunk;
 pub(crate) mod chunk_index;
 pub(crate) mod compensation;

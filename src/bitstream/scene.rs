@@ -1,11 +1,11 @@
 //! Chunks `n` and `m` (`format/SPEC.md`, sections 4.6 and 4.7): the meshes of a scene and where they stand; how
 //! materials look.
 
-use super::budget::Budget;
-use super::bytes::Reader;
-#[cfg(any(feature = "encoder", test))]
-use super::bytes::write_varint;
 use crate::mesh::{GltfMaterials, IDENTITY, Instance, SceneTable};
+use crate::util::budget::Budget;
+use crate::util::bytes::Reader;
+#[cfg(any(feature = "encoder", test))]
+use crate::util::bytes::write_varint;
 
 const UNMOVED: u8 = 0;
 const MOVED: u8 = 1;

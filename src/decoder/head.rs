@@ -3,7 +3,6 @@
 use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, StreamInfo, TrailingInfo};
 use super::refused::{malformed, out_of_order, skip};
 use super::{attributes, forecast};
-use crate::bitstream::budget::Budget;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::chunk_index::Announced;
 use crate::bitstream::header::{Header, Provenance};
@@ -11,6 +10,7 @@ use crate::bitstream::scene;
 use crate::limits::Limits;
 use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
+use crate::util::budget::Budget;
 use crate::{DecodeError, Profile};
 
 /// Whether the decoder knows what stands beside the surface. Without that all of it is skipped as chunks that nobody

@@ -1,7 +1,6 @@
 //! From attributes to integers: how each is declared, and the rows of its elements.
 
 use super::options::EncodeOptions;
-use crate::bitstream::budget::Budget;
 use crate::bitstream::scene;
 use crate::mesh::surface::turns;
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
@@ -9,6 +8,7 @@ use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};
 use crate::simplification::Seams;
+use crate::util::budget::Budget;
 use crate::{EncodeError, TriMesh};
 use std::collections::HashMap;
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use super::ties::Ties;
 use crate::TriMesh;
 use crate::bitstream::header::Grid;
 use crate::mesh::has_three_vertices;
-use crate::morton::morton;
+use crate::util::morton::morton;
 use rayon::prelude::*;
 
 /// The usable part of a mesh on the grid, in its own order.

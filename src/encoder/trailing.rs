@@ -13,13 +13,13 @@ use crate::decoder::assemble::Extras;
 use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::has_three_vertices;
 use crate::mesh::surface::turns;
-use crate::morton::morton;
 use crate::passes::attribute::Rows;
 use crate::passes::float_values::Ladder;
 use crate::passes::isolated_and_degenerate::{self, Loose};
 use crate::passes::order::{self, Order};
 use crate::passes::values::Elements;
 use crate::passes::{GridMesh, exact};
+use crate::util::morton::morton;
 use bitvec::vec::BitVec;
 
 /// Glued vertices are never removed unless they are a larger share of all: the base would be too large.

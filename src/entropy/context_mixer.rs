@@ -4,7 +4,7 @@
 use super::range_coder::BitCoder;
 use super::specialists::{self, Specialists};
 use super::tables::Tables;
-use crate::lanes::Lanes;
+use crate::util::simd4::Lanes;
 use std::hint::black_box;
 
 /// Inputs of every mixer: contexts, direct inputs and the bias together. Two SIMD vectors.

@@ -1,7 +1,7 @@
 //! Densities of integers: several experts, each a centre and a scale (`format/SPEC.md`, section 6.4).
 
 use super::tables::Tables;
-use crate::lanes::Lanes;
+use crate::util::simd4::Lanes;
 
 /// Guesses at an integer; lane `i` is what expert `i` says. A lane may stay empty, with weight 0.
 #[derive(Clone, Copy, Debug, Default)]

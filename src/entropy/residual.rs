@@ -198,7 +198,7 @@ impl ResidualModel {
 mod tests {
     use super::*;
     use crate::entropy::range_coder::{RangeDecoder, RangeEncoder};
-    use crate::lanes::Lanes;
+    use crate::util::simd4::Lanes;
 
     fn expectation(origin: i32, centre: f32, scale: f32) -> Expectation {
         let mixture = Mixture {

@@ -4,7 +4,7 @@
 use super::context_mixer::{Counter, WeightSet};
 use super::range_coder::PROBABILITY_ONE;
 use super::tables::Tables;
-use crate::lanes::Lanes;
+use crate::util::simd4::Lanes;
 
 /// Contexts of a bit whose values have specialists.
 pub(super) const MOST: usize = 3;

@@ -2,9 +2,9 @@
 //! streams by what is known of them, packed, and compressed all together.
 
 use super::range_coder::BitCoder;
-use crate::bitstream::bytes::Reader;
+use crate::util::bytes::Reader;
 #[cfg(any(feature = "encoder", test))]
-use crate::bitstream::bytes::write_varint;
+use crate::util::bytes::write_varint;
 
 /// What is one bit, by what it is and its context.
 pub(crate) mod stream {

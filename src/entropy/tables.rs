@@ -3,7 +3,7 @@
 //! The decoder may not call a library's logarithm: its last bits differ between platforms. These
 //! are made of + − × ÷ in a fixed order, tabulated once.
 
-use crate::lanes::Lanes;
+use crate::util::simd4::Lanes;
 use std::sync::LazyLock;
 
 /// Entries of the logistic table over [−12, 12).

@@ -1,11 +1,11 @@
 //! Streams taken apart into chunks, changed, and put together so that what a reader checks first is right.
 
-use crate::bitstream::budget::Budget;
 use crate::bitstream::chunk::{self, Frame, kind};
 use crate::bitstream::chunk_index::Announced;
 use crate::bitstream::header::{Header, Pass};
 use crate::bitstream::pass_table;
 use crate::passes::attribute::Declarations;
+use crate::util::budget::Budget;
 
 /// A chunk; of a pass with its row of the table.
 #[derive(Clone)]

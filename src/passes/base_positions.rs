@@ -13,7 +13,7 @@ use crate::entropy::mixture::Mixture;
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::residual::{CALLER_CONTEXTS, Expectation, SIGN_CONTEXTS};
 use crate::entropy::tables::log2;
-use crate::lanes::Lanes;
+use crate::util::simd4::Lanes;
 
 /// Roughness of a vertex that was guessed from no neighbour.
 const UNKNOWN_ROUGHNESS: i8 = -16;

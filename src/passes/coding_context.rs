@@ -3,9 +3,9 @@
 use super::GridMesh;
 use super::base_traversal::PlacingOrder;
 use super::patch::Patches;
-use crate::lanes::Lanes;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::prediction::ring_context::{Neighbourhood, Outlook, PartOfRing};
+use crate::util::simd4::Lanes;
 
 /// Classes of vertices that have filters each: by valence from 3 to 8 and more, and open rings.
 pub(crate) const NUM_CLASSES: usize = 7;

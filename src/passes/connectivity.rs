@@ -9,10 +9,10 @@ use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::streams::stream;
 use crate::entropy::tables::{Tables, index_below};
-use crate::lanes::Cell;
 use crate::mesh::Surface;
 use crate::mesh::ears::MAX_VALENCE;
 use crate::mesh::surface::{NO_CORNER, next, prev};
+use crate::util::simd4::Cell;
 use std::collections::{HashMap, VecDeque};
 
 /// What the encoder wants written, in the numbering of the coarse mesh.

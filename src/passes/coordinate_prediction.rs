@@ -5,10 +5,10 @@ use super::coding_context::{NUM_CLASSES, Surroundings};
 use crate::entropy::mixture::Mixture;
 pub(crate) use crate::entropy::residual::NUM_KINDS;
 use crate::entropy::tables::{exp2, index_below, log2};
-use crate::lanes::Lanes;
 use crate::prediction::ring_context::{NUM_FEATURES, Outlook};
 use crate::prediction::rls_affine::AffineFilter;
 use crate::prediction::robust_estimate::{Consensus, Guesses, MAX_GUESSES};
+use crate::util::simd4::Lanes;
 
 /// Kind of the coordinate closest to the normal.
 pub(crate) const ACROSS: usize = 2;

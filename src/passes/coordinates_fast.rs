@@ -8,8 +8,8 @@ use super::work_budget::Work;
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::streams::stream;
 use crate::entropy::tables::{index_below, log2, round_half_up};
-use crate::lanes::Lanes;
 use crate::mesh::surface::NO_CORNER;
+use crate::util::simd4::Lanes;
 
 /// Share of the parallelograms' mean distance from the ring's mean.
 const TIP_SHARE: f32 = 0.25;

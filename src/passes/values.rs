@@ -7,10 +7,10 @@ use super::exact::{ExactCoder, Keyed};
 use super::float_values::{Ladder, Scale};
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
-use crate::bitstream::bytes::Reader;
 use crate::entropy::context_mixer::PlainBits;
 use crate::entropy::range_coder::BitCoder;
 use crate::mesh::{MAX_COMPONENTS, NO_ROW, ScalarType, Values};
+use crate::util::bytes::Reader;
 use std::collections::HashMap;
 
 /// The ladders of an attribute's components; `None` if its rows are exact as they are, or need not be.

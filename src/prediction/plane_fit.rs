@@ -1,7 +1,7 @@
 //! What points around a vertex say of a function at the vertex itself: weighted means, and fits of an affine
 //! or a conformal function in the tangent plane (`format/SPEC.md`, section 8.4).
 
-use crate::lanes::Lanes;
+use crate::util::simd4::Lanes;
 
 /// Length that counts for no distance at all, in grid steps.
 const SHORTEST: f32 = 0.25;

@@ -1,7 +1,7 @@
 //! What surrounds a vertex that is to be predicted: its ring, and the vertices across the ring's
 //! edges (`format/SPEC.md`, section 8.1).
 
-use crate::lanes::Lanes;
+use crate::util::simd4::Lanes;
 
 /// Directions in which the ring mean may be corrected; see [`Outlook::features`].
 pub(crate) const NUM_FEATURES: usize = 3;

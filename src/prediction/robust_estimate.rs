@@ -4,7 +4,7 @@
 //! neighbours and each parallelogram name the vertex almost exactly, save the few that reach across
 //! an irregularity or a crease. Their mean is spoilt by those, their median and their mode are not.
 
-use crate::lanes::Lanes;
+use crate::util::simd4::Lanes;
 
 /// Guesses that are looked at; the rest of a large ring is left out.
 pub(crate) const MAX_GUESSES: usize = 16;

@@ -6,8 +6,8 @@ use super::collapse::is_tetrahedral;
 use super::geometry::{area_vector, is_same_side};
 use super::seams::Demand;
 use super::surface_editor::{ShrinkingSurface, Star};
-use crate::lanes::Cell;
 use crate::mesh::ears::{Bytes, Ear, Hole, IN_ORDER, MAX_CORNERS, MAX_VALENCE};
+use crate::util::simd4::Cell;
 
 /// Scratch space of the rule.
 #[derive(Default)]

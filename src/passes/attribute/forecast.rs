@@ -8,12 +8,12 @@ use crate::entropy::mixture::Mixture;
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::residual::{Expectation, NUM_KINDS, ResidualModel};
 use crate::entropy::tables::{exp2, log2};
-use crate::lanes::Lanes;
 use crate::passes::coordinate_prediction::{
     FLOOR, MAX_CENTRE, NUM_CUES, SHARPNESS_FACTOR, ScaleModel, TRUST_LEVELS, TRUST_RATE, log_level,
 };
 use crate::prediction::plane_fit::PlaneFit;
 use crate::prediction::rls::{Filter, sum};
+use crate::util::simd4::Lanes;
 
 /// What the channels mean together.
 #[derive(Clone, Copy, Debug)]

@@ -8,12 +8,12 @@ use super::rows::Rows;
 use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::tables::Tables;
-use crate::lanes::Lanes;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::mesh::{Domain, NO_ROW, Semantic, Surface};
 use crate::passes::patch::Patches;
 use crate::passes::work_budget::Work;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
+use crate::util::simd4::Lanes;
 
 /// Neighbouring rows that a row may repeat.
 const MAX_REPEATED: usize = 3;
