@@ -16,7 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod apd;
+mod average_plane_distance;
 mod noise;
 
 pub use noise::Noise;
@@ -29,7 +29,7 @@ use crate::simplification::level::Level;
 use crate::simplification::partition::{Geometry, by_score, remove_in_order};
 use crate::simplification::{Seams, ShrinkingSurface};
 use crate::{EncodeError, TriMesh};
-use apd::average_plane_distance;
+use average_plane_distance::average_plane_distance;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
