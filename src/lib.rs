@@ -53,4 +53,6 @@ pub use limits::Limits;
 pub use mesh::repair::RepairReport;
 pub use mesh::{MeshError, TriMesh};
 #[cfg(feature = "encoder")]
-pub use simplification::partition::{Optimize, Partition};
+pub use simplification::partition::Partition;
+#[cfg(feature = "encoder")]
+pub use simplification::vertex_selection::Optimize;

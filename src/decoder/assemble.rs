@@ -8,9 +8,10 @@ use super::refused::Refused;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::Grid;
 use crate::entropy::range_coder::RangeDecoder;
+use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, has_three_vertices};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, TriMesh, has_three_vertices};
 use crate::passes::attribute::{Declarations, Rows};
 use crate::passes::cost::{self, Counts};
 use crate::passes::isolated_and_degenerate::{self, Loose};
@@ -18,7 +19,6 @@ use crate::passes::order::{self, Order};
 use crate::passes::stitching::{self, GlueModels};
 use crate::passes::values::{self, Elements, Told};
 use crate::passes::{GridMesh, Malformed, exact};
-use crate::{DecodeError, TriMesh};
 
 /// What the chunks beside the passes tell of the finest mesh, as far as they have come.
 #[derive(Default)]

@@ -5,10 +5,11 @@ use crate::bitstream::chunk_index::Announced;
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::{Action, Grid, Pass, Provenance};
 use crate::bitstream::pass_table::{self, BadTable};
+use crate::bitstream::profile::Profile;
+use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::{Domain, ScalarType, SceneTable, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
-use crate::{DecodeError, Profile};
 
 /// What a stream says of itself before its first pass.
 #[derive(Clone, Debug)]

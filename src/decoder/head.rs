@@ -6,12 +6,13 @@ use super::{attributes, forecast};
 use crate::bitstream::chunk::kind;
 use crate::bitstream::chunk_index::Announced;
 use crate::bitstream::header::{Header, Provenance};
+use crate::bitstream::profile::Profile;
 use crate::bitstream::scene;
+use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
 use crate::util::budget::Budget;
-use crate::{DecodeError, Profile};
 
 /// Whether the decoder knows what stands beside the surface. Without that all of it is skipped as chunks that nobody
 /// knows, and the compiler leaves out what would read it.

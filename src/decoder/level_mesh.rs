@@ -1,9 +1,9 @@
 //! The mesh a decoder holds, as callers see it.
 
 use super::assemble::Extras;
-use crate::TriMesh;
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::Grid;
+use crate::mesh::TriMesh;
 use crate::passes::compensation::Mover;
 
 /// A borrowed view of the finest complete mesh: valid until the decoder takes more bytes.

@@ -3,8 +3,10 @@
 use super::frame::{PassInfo, PassKind};
 use super::running::Running;
 use crate::bitstream::header::Action;
+use crate::bitstream::profile::Profile;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::RangeDecoder;
+use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::Surface;
 use crate::passes::connectivity::ConnectivityModels;
@@ -13,7 +15,6 @@ use crate::passes::patch::{Patches, StarBuilder};
 use crate::passes::refine::RefineModels;
 use crate::passes::work_budget::Work;
 use crate::passes::{GridMesh, Malformed};
-use crate::{DecodeError, Profile};
 
 /// The mesh and all that is learnt about it.
 #[derive(Clone)]

@@ -11,12 +11,13 @@ use super::running::Running;
 use super::{environment, forecast};
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::compensation::Compensation;
+use crate::bitstream::profile::Profile;
+use crate::error::DecodeError;
 use crate::limits::Limits;
-use crate::mesh::Attributes;
+use crate::mesh::{Attributes, TriMesh};
 use crate::passes::GridMesh;
 use crate::passes::patch::Patches;
 use crate::passes::work_budget::Work;
-use crate::{DecodeError, Profile, TriMesh};
 use std::collections::VecDeque;
 use std::ops::Range;
 

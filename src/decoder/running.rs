@@ -2,8 +2,8 @@
 
 use super::frame::{PassInfo, PassKind};
 use super::passes::{Models, PassDecoder};
-use crate::Profile;
 use crate::bitstream::header::Action;
+use crate::bitstream::profile::Profile;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeState};
 use crate::entropy::streams::StreamReader;

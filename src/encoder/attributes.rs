@@ -2,14 +2,14 @@
 
 use super::options::EncodeOptions;
 use crate::bitstream::scene;
+use crate::error::EncodeError;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, TriMesh, Values};
 use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};
 use crate::simplification::Seams;
 use crate::util::budget::Budget;
-use crate::{EncodeError, TriMesh};
 use std::collections::HashMap;
 use std::sync::Arc;
 

@@ -3,9 +3,8 @@
 
 use super::tie_break::Signatures;
 use super::ties::Ties;
-use crate::TriMesh;
 use crate::bitstream::header::Grid;
-use crate::mesh::has_three_vertices;
+use crate::mesh::{TriMesh, has_three_vertices};
 use crate::util::morton::morton;
 use rayon::prelude::*;
 

@@ -1,9 +1,8 @@
 //! Down the levels: M^L → M^0.
 
 use super::options::{Attempt, EncodeOptions, Progress};
-use crate::TriMesh;
 use crate::descriptors::{self, Features};
-use crate::mesh::Surface;
+use crate::mesh::{Surface, TriMesh};
 use crate::simplification::hierarchy::{Descent, Settings};
 use crate::simplification::partition::Geometry;
 use crate::simplification::{LevelRecord, Seams};

@@ -24,12 +24,12 @@ use values::ExactValues;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
-use crate::decoder::environment;
+use crate::decoder::{StreamInfo, environment};
 use crate::descriptors::{Features, FeaturesError};
+use crate::error::EncodeError;
 use crate::mesh::repair::{RepairReport, cut};
-use crate::mesh::{Attributes, has_three_vertices};
+use crate::mesh::{Attributes, TriMesh, has_three_vertices};
 use crate::passes::Malformed;
-use crate::{EncodeError, StreamInfo, TriMesh};
 use std::cell::OnceCell;
 
 /// Encodes a mesh.

@@ -2,7 +2,8 @@
 //! steps, halves rounded up).
 
 use crate::bitstream::header::Grid;
-use crate::{EncodeError, TriMesh};
+use crate::error::EncodeError;
+use crate::mesh::TriMesh;
 
 /// Bits of a grid that is finer than float32, on which the sides of faces are compared where no stream sets
 /// a grid.

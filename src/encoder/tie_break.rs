@@ -3,9 +3,8 @@
 
 use super::attributes::{Elements, quantise};
 use super::options::EncodeOptions;
-use crate::TriMesh;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Values};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, TriMesh, Values};
 use crate::passes::attribute::Coding;
 
 /// A number for each element of a mesh; elements that no stream keeps have any.

@@ -23,12 +23,12 @@ pub use noise::Noise;
 
 use crate::descriptors::{self, Descriptor, Readings, Window};
 use crate::encoder::quantise::{LEGALITY_BITS, quantise};
-use crate::mesh::Surface;
+use crate::error::EncodeError;
 use crate::mesh::repair::{RepairReport, Repaired, repair};
+use crate::mesh::{Surface, TriMesh};
 use crate::simplification::level::Level;
 use crate::simplification::partition::{Geometry, by_score, remove_in_order};
 use crate::simplification::{Seams, ShrinkingSurface};
-use crate::{EncodeError, TriMesh};
 use average_plane_distance::average_plane_distance;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;

@@ -8,18 +8,23 @@ use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::chunk_index::Announced;
 use crate::bitstream::header::{self, Action, Grid, Header, Pass};
 use crate::bitstream::pass_table;
+use crate::bitstream::profile::Profile;
+use crate::decoder::{Decoder, LevelMesh, Step, StreamInfo, Update};
 use crate::descriptors::{Descriptor, Window};
+use crate::encoder::{EncodeOptions, encode_with_attributes};
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::mixture::Mixture;
 use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
 use crate::entropy::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
+use crate::error::{DecodeError, EncodeError};
 use crate::io::{self, Format, TerrainOptions};
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, Values, has_three_vertices};
-use crate::passes::cost;
-use crate::{
-    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Profile, Step,
-    StreamInfo, TriMesh, Update, encode_with_attributes,
+use crate::limits::Limits;
+use crate::mesh::{
+    Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, TriMesh, Values, has_three_vertices,
 };
+use crate::passes::cost;
+use crate::simplification::partition::Partition;
+use crate::simplification::vertex_selection::Optimize;
 
 const SMALL: Limits = Limits { max_memory: 64 << 20, max_vertices: 100_000, max_levels: 64, max_work: None };
 /// Meshes up to here are walked after every pass, larger ones after the last.

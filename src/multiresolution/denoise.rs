@@ -2,7 +2,8 @@
 
 use super::{Decomposition, Options, Prediction};
 use crate::descriptors::Descriptor;
-use crate::{EncodeError, TriMesh};
+use crate::error::EncodeError;
+use crate::mesh::TriMesh;
 use glam::DVec3;
 
 /// Median of the absolute values of a Gaussian variable over its standard deviation.

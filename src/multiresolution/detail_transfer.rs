@@ -4,8 +4,9 @@ use super::hierarchy::{StreamTower, Tower};
 use super::lift::vertex_normals;
 use super::{Decomposition, Prediction};
 use crate::encoder::quantise::unit_near;
-use crate::mesh::has_three_vertices;
-use crate::{DecodeError, Limits, TriMesh};
+use crate::error::DecodeError;
+use crate::limits::Limits;
+use crate::mesh::{TriMesh, has_three_vertices};
 use glam::DVec3;
 use thiserror::Error;
 
@@ -69,7 +70,8 @@ impl Edition {
     /// If the stream is damaged, incomplete or beyond `limits`, or no level has as many vertices.
     pub fn new(bytes: &[u8], num_vertices: usize, limits: Limits) -> Result<Self, EditError> {
         let StreamTower { tower, coarse: cut, fine, joined } = Tower::of_stream(bytes, num_vertices, limits)?;
-        let finest_level = crate::StreamInfo::read(bytes)?.map_or(0, |info| info.finest_level() as usize);
+        let finest_level =
+            crate::decoder::StreamInfo::read(bytes)?.map_or(0, |info| info.finest_level() as usize);
         let level = finest_level - tower.num_levels();
         let (low, high) = fine.bounding_box().ok_or(EditError::Incomplete)?;
         let unit = unit_near((0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max));

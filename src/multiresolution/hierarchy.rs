@@ -3,14 +3,16 @@
 use super::Options;
 use super::detail_transfer::EditError;
 use crate::decoder::{Decoder, PassKind};
+use crate::descriptors;
 use crate::encoder::quantise::{LEGALITY_BITS, quantise};
+use crate::error::EncodeError;
 use crate::limits::Limits;
-use crate::mesh::Surface;
 use crate::mesh::repair::{Repaired, repair};
+use crate::mesh::{Surface, TriMesh};
 use crate::simplification::hierarchy::{Descent, Settings};
 use crate::simplification::level::Level;
-use crate::simplification::partition::{Geometry, Optimize};
-use crate::{EncodeError, TriMesh, descriptors};
+use crate::simplification::partition::Geometry;
+use crate::simplification::vertex_selection::Optimize;
 use bitvec::vec::BitVec;
 
 /// Triangles of M^0 … M^L. M^k has the vertices below its number.

@@ -47,8 +47,9 @@ pub use denoise::{Threshold, denoised};
 pub use detail_transfer::{EditError, Edition};
 
 use crate::descriptors::{Descriptor, Window};
+use crate::error::EncodeError;
+use crate::mesh::TriMesh;
 use crate::simplification::partition::Partition;
-use crate::{EncodeError, TriMesh};
 use glam::DVec3;
 use hierarchy::{MeshTower, Tower};
 use lift::Split;

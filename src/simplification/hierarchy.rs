@@ -2,13 +2,12 @@
 
 use super::canonical::Anchors;
 use super::level::Level;
-use super::partition::{Geometry, Optimize, Partition, Ranked, is_coarse, remove_level};
+use super::partition::{Geometry, Partition, Ranked, is_coarse, remove_level};
 use super::quadrics::ErrorMemory;
-use super::vertex_selection::{Saliency, Thinning};
+use super::vertex_selection::{Optimize, Saliency, Thinning};
 use super::{LevelRecord, Rings, Seams, ShrinkingSurface};
-use crate::TriMesh;
 use crate::descriptors::{Descriptor, Evaluation, Features, Window};
-use crate::mesh::Surface;
+use crate::mesh::{Surface, TriMesh};
 use bitvec::vec::BitVec;
 
 /// Most levels, whatever the wish.

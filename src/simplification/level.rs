@@ -2,8 +2,7 @@
 
 use super::ShrinkingSurface;
 use super::surface_editor::FREE;
-use crate::TriMesh;
-use crate::mesh::Surface;
+use crate::mesh::{Surface, TriMesh};
 use rayon::prelude::*;
 
 /// Triangles whose sides are added up by one thread.
