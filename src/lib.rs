@@ -40,7 +40,7 @@ pub mod render;
 
 pub use bitstream::profile::Profile;
 pub use decoder::{
-    AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Placing, Step, StreamInfo,
+    AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, PositionUpdater, Step, StreamInfo,
     TrailingInfo, TrailingKind, Update, decode,
 };
 #[cfg(feature = "encoder")]

@@ -7,7 +7,7 @@ mod common;
 
 use common::kinds::every_kind;
 use common::*;
-use lwc::multiresolution::{Decomposition, EditError, Edition, Options, Prediction, denoised};
+use lwc::multiresolution::{Decomposition, DetailTransfer, EditError, Options, Prediction, denoised};
 use lwc::{DecodeOptions, EncodeOptions, Limits, Partition, TriMesh};
 
 const WAYS: [(Prediction, bool); 4] = [
@@ -139,7 +139,7 @@ fn a_rigid_motion_of_the_coarse_mesh_moves_the_fine_mesh_rigidly() {
         let fine = lwc::decode(&stream, DecodeOptions::new()).unwrap();
         for level in [0, 2, 5] {
             let coarse = lwc::decode(&stream, DecodeOptions::new().level(level)).unwrap();
-            let edition = Edition::new(&stream, coarse.num_vertices(), Limits::default()).unwrap();
+            let edition = DetailTransfer::new(&stream, coarse.num_vertices(), Limits::default()).unwrap();
             assert_eq!((edition.level(), edition.coarse()), (level as usize, &coarse));
             let same = edition.clone().apply(&coarse).unwrap();
             assert!(difference(&fine, &same) < 1e-11, "level {level}");
@@ -163,7 +163,7 @@ fn a_bent_coarse_mesh_carries_its_details_along() {
     let stream = lwc::encode(&mesh, &EncodeOptions::default()).unwrap();
     let level = stream.info.finest_level() - 4;
     let coarse = lwc::decode(&stream.bytes, DecodeOptions::new().level(level)).unwrap();
-    let edition = Edition::new(&stream.bytes, coarse.num_vertices(), Limits::default()).unwrap();
+    let edition = DetailTransfer::new(&stream.bytes, coarse.num_vertices(), Limits::default()).unwrap();
     let bent = edition.apply(&map_positions(coarse, bend)).unwrap();
     let fine = lwc::decode(&stream.bytes, DecodeOptions::new()).unwrap();
     let errors: Vec<f64> = bent
@@ -183,7 +183,7 @@ fn a_bent_coarse_mesh_carries_its_details_along() {
 fn a_wrong_mesh_is_refused_with_a_clear_error() {
     let stream = lwc::encode(&bumpy_sphere(), &EncodeOptions::default()).unwrap().bytes;
     let coarse = lwc::decode(&stream, DecodeOptions::new().level(3)).unwrap();
-    let new = |bytes: &[u8], n| Edition::new(bytes, n, Limits::default());
+    let new = |bytes: &[u8], n| DetailTransfer::new(bytes, n, Limits::default());
     let edition = new(&stream, coarse.num_vertices()).unwrap();
 
     let Err(EditError::Vertices { found: 7, levels }) = new(&stream, 7) else { panic!("seven") };

@@ -22,14 +22,14 @@ fn stage(kind: u8) -> Option<u8> {
 
 /// Payloads of chunks to come.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Announced {
+pub(crate) struct ChunkIndex {
     /// Passes with glue behind them, ascending, and the bytes of its payload.
     pub(crate) glue: Vec<(u32, u32)>,
     /// Kinds of the chunks behind the last pass, in order, and the bytes of their payloads.
     pub(crate) trailing: Vec<(u8, u32)>,
 }
 
-impl Announced {
+impl ChunkIndex {
     /// `None` if a rule is broken.
     pub(crate) fn read(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn chunks_that_refer_to_others_come_behind_them() {
         let read = |kinds: &[u8]| {
-            Announced::read(&[&[0][..], &kinds.iter().flat_map(|&k| [k, 1]).collect::<Vec<_>>()].concat())
+            ChunkIndex::read(&[&[0][..], &kinds.iter().flat_map(|&k| [k, 1]).collect::<Vec<_>>()].concat())
         };
         for sound in ["ixvo", "ivxo", "vx", "io", "mixo", "zimxvo", "o"] {
             assert!(read(sound.as_bytes()).is_some(), "{sound}");
@@ -96,22 +96,22 @@ mod tests {
 
     #[test]
     fn announcements_return_and_lies_are_refused() {
-        let announced = Announced {
+        let announced = ChunkIndex {
             glue: vec![(0, 300), (4, 1)],
             trailing: vec![(kind::LOOSE, 7), (kind::EXACT, 1 << 20), (b'z', 0)],
         };
         let payload = announced.write();
-        assert_eq!(Announced::read(&payload), Some(announced.clone()));
-        assert_eq!(Announced::read(&[0]), Some(Announced::default()));
+        assert_eq!(ChunkIndex::read(&payload), Some(announced.clone()));
+        assert_eq!(ChunkIndex::read(&[0]), Some(ChunkIndex::default()));
         let complete = [5, 7, 11, 12, 14];
         for cut in (0..payload.len()).filter(|cut| !complete.contains(cut)) {
-            let read = Announced::read(&payload[..cut]);
+            let read = ChunkIndex::read(&payload[..cut]);
             assert!(read.is_none_or(|read| read.trailing.len() < 3), "{cut}");
         }
         for bad in
             [&[2, 1, 5, 1, 5][..], &[0, b'B', 1], &[0, b'x', 1, b'x', 1], &[0, b'g', 1], &[0x80, 0x80, 1]]
         {
-            assert_eq!(Announced::read(bad), None, "{bad:?}");
+            assert_eq!(ChunkIndex::read(bad), None, "{bad:?}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! From bytes to chunks: what a stream announces, and where its passes begin.
 
 use crate::bitstream::chunk::{self, Frame, NextPass};
-use crate::bitstream::chunk_index::Announced;
+use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::{Action, Grid, Pass, Provenance};
 use crate::bitstream::pass_table::{self, BadTable};
@@ -448,7 +448,7 @@ pub(super) fn list_passes(
 /// Makes room for announced chunks: the glue of the passes, and what follows the last one.
 pub(super) fn add_announced(
     passes: &mut [PassInfo],
-    announced: &Announced,
+    announced: &ChunkIndex,
 ) -> Result<Vec<TrailingInfo>, BadTable> {
     let mut shift = 0;
     let mut glue = announced.glue.iter().peekable();

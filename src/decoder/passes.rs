@@ -13,7 +13,7 @@ use crate::passes::connectivity::ConnectivityModels;
 use crate::passes::coordinates::CoordinateModels;
 use crate::passes::patch::{Patches, StarBuilder};
 use crate::passes::refine::RefineModels;
-use crate::passes::work_budget::Work;
+use crate::passes::work_budget::WorkBudget;
 use crate::passes::{GridMesh, Malformed};
 
 /// The mesh and all that is learnt about it.
@@ -101,7 +101,7 @@ impl PassDecoder {
         running: &mut Running,
         pass: &PassInfo,
         payload: &[u8],
-        work: &mut Work,
+        work: &mut WorkBudget,
     ) -> Result<Option<(Changes, Patches)>, Malformed> {
         let result = running.advance(self, pass, payload, work).map(|patches| {
             let patches = patches?;
@@ -136,7 +136,8 @@ impl PassDecoder {
         let mut coder = RangeDecoder::of_cut(payload);
         let mut ahead = self.clone();
         let mut running = Running::new(payload, pass, self.profile)?;
-        let patches = running.advance_with(&mut ahead, pass, &mut coder, &mut Work::unlimited()).ok()??;
+        let patches =
+            running.advance_with(&mut ahead, pass, &mut coder, &mut WorkBudget::unlimited()).ok()??;
         if pass.kind == PassKind::Refine {
             return Some((ahead.mesh, patches));
         }

@@ -10,7 +10,7 @@ use crate::passes::GridMesh;
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
 use crate::passes::attribute::{Brought, Desk, Layer, Rows, Truth};
 use crate::passes::patch::{Patches, Star};
-use crate::passes::work_budget::Work;
+use crate::passes::work_budget::WorkBudget;
 use crate::simplification::LevelRecord;
 use crate::simplification::record::Removed;
 
@@ -115,7 +115,7 @@ impl<'a> AttributeWriter<'a> {
                 truth.extend(missing.map(|&v| attribute.of[v as usize]));
             }
             let truth = Truth { of: truth, rows: &attribute.rows };
-            let work = &mut Work::unlimited();
+            let work = &mut WorkBudget::unlimited();
             let done = layer.code_some(&mut coder, brought, &mut 0, Some(truth), work, &mut desk);
             debug_assert_eq!(done, Ok(true));
             num_channels += attribute.declaration.num_channels() as u64;

@@ -30,7 +30,7 @@ pub(super) struct Found {
 }
 
 /// Codes connectivity, one level ahead.
-pub(super) struct Scout {
+pub(super) struct PatchSearch {
     models: ConnectivityModels,
     /// Scratch: patch of each slot of the full surface.
     patch_of_slot: Vec<u32>,
@@ -38,7 +38,7 @@ pub(super) struct Scout {
     mesh: GridMesh,
 }
 
-impl Scout {
+impl PatchSearch {
     pub(super) fn new(num_faces: usize, mixing: Mixing) -> Self {
         let patch_of_slot = vec![NOT_IN_PATCH; num_faces];
         Self { models: ConnectivityModels::new(mixing), patch_of_slot, mesh: GridMesh::default() }

@@ -5,12 +5,12 @@ use super::attributes::Quantised;
 use super::coarsen::{ANALYSIS_SHARE, Hierarchy};
 use super::compensation::{Fitter, Point};
 use super::options::Progress;
-use super::patch_search::{Found, Names, Scout};
+use super::patch_search::{Found, Names, PatchSearch};
 use super::schedule::{Schedule, Step};
 use super::trailing::{Exact, Written};
 use super::{earnings, expect_sound, padded};
 use crate::bitstream::chunk::{self, kind};
-use crate::bitstream::chunk_index::Announced;
+use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::{Action, Header, MAX_VERTICES_PER_BYTE, Pass, Provenance};
 use crate::bitstream::pass_table;
@@ -24,7 +24,7 @@ use crate::passes::coordinates_fast::{self, Located};
 use crate::passes::patch::{Patches, Star, StarBuilder};
 use crate::passes::refine::{self, RefineModels};
 use crate::passes::stitching::{self, GlueModels};
-use crate::passes::work_budget::Work;
+use crate::passes::work_budget::WorkBudget;
 use crate::simplification::LevelRecord;
 use bitvec::vec::BitVec;
 
@@ -44,7 +44,7 @@ pub(super) fn write(
 ) -> Vec<u8> {
     let (mut writer, mut names) =
         PassWriter::new(hierarchy, cells, attributes, exact, points, schedule.base_precision);
-    let mut scout = Scout::new(hierarchy.num_faces, writer.profile.mixing());
+    let mut scout = PatchSearch::new(hierarchy.num_faces, writer.profile.mixing());
     let is_split = |step: &&Step| matches!(step, Step::Split(_));
     let num_first = schedule.steps.iter().take_while(|step| !is_split(step)).count();
     let (first, rest) = schedule.steps.split_at(num_first);
@@ -134,7 +134,7 @@ fn assemble(
         chunk::write(&mut bytes, kind::MATERIALS, materials);
     }
     let glue = passes.iter().zip(0..).filter_map(|(pass, i)| Some((i, pass.glue.as_ref()?.len() as u32)));
-    let announced = Announced {
+    let announced = ChunkIndex {
         glue: glue.collect(),
         trailing: trailing.iter().map(|(kind, payload)| (*kind, payload.len() as u32)).collect(),
     };
@@ -310,7 +310,7 @@ impl<'a> PassWriter<'a> {
                     positions,
                     &mut 0,
                     Some(&target),
-                    &mut Work::unlimited(),
+                    &mut WorkBudget::unlimited(),
                 );
                 coder.finish()
             }
@@ -330,7 +330,7 @@ impl<'a> PassWriter<'a> {
         self.finish_split(&patches, coder.finish(), names);
     }
 
-    fn split_in_streams(&mut self, record: &LevelRecord, names: &mut Names, scout: &mut Scout) {
+    fn split_in_streams(&mut self, record: &LevelRecord, names: &mut Names, scout: &mut PatchSearch) {
         let mut coder = StreamWriter::new(record.len() as u32);
         let (patches, odd) = scout.find_with(&mut coder, &self.mesh, names, record);
         let (wanted, limit) = (self.wanted(record, &odd), 1 << self.precision);

@@ -28,7 +28,7 @@ use crate::mesh::repair::{RepairReport, Repaired, repair};
 use crate::mesh::{Surface, TriMesh};
 use crate::simplification::level::Level;
 use crate::simplification::partition::{Geometry, by_score, remove_in_order};
-use crate::simplification::{Seams, ShrinkingSurface};
+use crate::simplification::{Seams, SurfaceEditor};
 use average_plane_distance::average_plane_distance;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
@@ -167,7 +167,7 @@ impl Experiment {
         };
         let mut window = settings.window;
         window.radius *= self.mean_edge / unit_length;
-        let mut shrinking = ShrinkingSurface::new(self.surface.clone());
+        let mut shrinking = SurfaceEditor::new(self.surface.clone());
         let mut steps = Vec::new();
         let (mut done, total) = (0.0, expected_work(self.num_vertices(), settings.levels));
         for step in 1..=settings.levels {

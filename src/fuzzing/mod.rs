@@ -5,7 +5,7 @@
 mod chunks;
 
 use crate::bitstream::chunk::{self, kind};
-use crate::bitstream::chunk_index::Announced;
+use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::header::{self, Action, Grid, Header, Pass};
 use crate::bitstream::pass_table;
 use crate::bitstream::profile::Profile;
@@ -488,7 +488,7 @@ fn made_up(data: &[u8]) -> Vec<u8> {
     };
     let glue = piece();
     let trailing = [kind::LOOSE, kind::EXACT, kind::VALUES, kind::ORDER].map(|kind| (kind, piece()));
-    let announced = Announced {
+    let announced = ChunkIndex {
         glue: if glue.is_empty() { Vec::new() } else { vec![(0, glue.len() as u32)] },
         trailing: trailing.map(|(kind, payload)| (kind, payload.len() as u32)).to_vec(),
     };

@@ -89,7 +89,7 @@ impl Decomposition {
     /// Root mean square, per level, of the details of noise of deviation 1.
     fn noise_gains(&self) -> Vec<f64> {
         let mut random = Noise(0x9e37_79b9_7f4a_7c15);
-        let num_vertices = self.tower.num_vertices(self.num_levels());
+        let num_vertices = self.hierarchy.num_vertices(self.num_levels());
         let mut values: Vec<f64> = (0..num_vertices).map(|_| random.next()).collect();
         let mut gains: Vec<f64> = Vec::new();
         for split in self.splits.iter().rev() {

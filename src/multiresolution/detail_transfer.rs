@@ -1,6 +1,6 @@
 //! Details of a stream put back on a coarse mesh that somebody has changed.
 
-use super::hierarchy::{StreamTower, Tower};
+use super::hierarchy::{Hierarchy, StreamHierarchy};
 use super::lift::vertex_normals;
 use super::{Decomposition, Prediction};
 use crate::encoder::quantise::unit_near;
@@ -50,7 +50,7 @@ fn list(counts: &[usize]) -> String {
 
 /// A level of a stream that may be changed, and the details above it.
 #[derive(Clone, Debug)]
-pub struct Edition {
+pub struct DetailTransfer {
     level: usize,
     /// The level, cut where it is not manifold.
     cut: TriMesh,
@@ -63,23 +63,25 @@ pub struct Edition {
     decomposition: Decomposition,
 }
 
-impl Edition {
+impl DetailTransfer {
     /// Reads `bytes`, a complete stream, down to the level with `num_vertices` vertices.
     ///
     /// # Errors
     /// If the stream is damaged, incomplete or beyond `limits`, or no level has as many vertices.
     pub fn new(bytes: &[u8], num_vertices: usize, limits: Limits) -> Result<Self, EditError> {
-        let StreamTower { tower, coarse: cut, fine, joined } = Tower::of_stream(bytes, num_vertices, limits)?;
+        let StreamHierarchy { hierarchy, coarse: cut, fine, joined } =
+            Hierarchy::of_stream(bytes, num_vertices, limits)?;
         let finest_level =
             crate::decoder::StreamInfo::read(bytes)?.map_or(0, |info| info.finest_level() as usize);
-        let level = finest_level - tower.num_levels();
+        let level = finest_level - hierarchy.num_levels();
         let (low, high) = fine.bounding_box().ok_or(EditError::Incomplete)?;
         let unit = unit_near((0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max));
         let (positions, places) = (points(&fine, unit), points(&cut, unit));
         let frames = Frames::new(&cut, &places);
         let offsets = positions.iter().zip(places).map(|(&fine, coarse)| fine - coarse);
         let refinements = offsets.enumerate().map(|(v, d)| frames.to_local(v, d)).collect();
-        let mut decomposition = Decomposition::of_tower(tower, positions, Prediction::default(), false);
+        let mut decomposition =
+            Decomposition::of_hierarchy(hierarchy, positions, Prediction::default(), false);
         decomposition.source = (0..fine.num_vertices() as u32).collect();
         decomposition.input = fine;
         decomposition.unit = unit;

@@ -17,22 +17,22 @@ use bitvec::vec::BitVec;
 
 /// Triangles of M^0 … M^L. M^k has the vertices below its number.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tower {
+pub(super) struct Hierarchy {
     levels: Vec<(usize, Vec<[u32; 3]>)>,
 }
 
 /// A mesh and its levels.
-pub(super) struct MeshTower {
-    pub(super) tower: Tower,
-    /// The vertex of the mesh for each of the tower.
+pub(super) struct MeshHierarchy {
+    pub(super) hierarchy: Hierarchy,
+    /// The vertex of the mesh for each of the hierarchy.
     pub(super) source: Vec<u32>,
     /// A power of two that brings the mesh near the size 1.
     pub(super) unit: f64,
 }
 
 /// A stream down to a level.
-pub(super) struct StreamTower {
-    pub(super) tower: Tower,
+pub(super) struct StreamHierarchy {
+    pub(super) hierarchy: Hierarchy,
     /// The coarse mesh as a decoder of that level gives it, and the finest mesh.
     /// Both cut where they are not manifold.
     pub(super) coarse: TriMesh,
@@ -41,7 +41,7 @@ pub(super) struct StreamTower {
     pub(super) joined: Vec<u32>,
 }
 
-impl Tower {
+impl Hierarchy {
     pub(super) fn num_levels(&self) -> usize {
         self.levels.len().saturating_sub(1)
     }
@@ -55,7 +55,7 @@ impl Tower {
     }
 
     /// Takes vertices out of `mesh` level by level.
-    pub(super) fn of_mesh(mesh: &TriMesh, options: &Options) -> Result<MeshTower, EncodeError> {
+    pub(super) fn of_mesh(mesh: &TriMesh, options: &Options) -> Result<MeshHierarchy, EncodeError> {
         let Repaired { surface, source, .. } = repair(mesh);
         if surface.triangles.is_empty() {
             return Err(EncodeError::NoTriangles);
@@ -96,8 +96,8 @@ impl Tower {
             let name = |i: u32| place[level.vertices[i as usize] as usize];
             (level.vertices.len(), level.triangles.iter().map(|t| t.map(name)).collect())
         });
-        Ok(MeshTower {
-            tower: Self { levels: named.collect() },
+        Ok(MeshHierarchy {
+            hierarchy: Self { levels: named.collect() },
             source: order.iter().map(|&v| source[v as usize]).collect(),
             unit: model.unit,
         })
@@ -111,10 +111,10 @@ impl Tower {
         bytes: &[u8],
         num_vertices: usize,
         limits: Limits,
-    ) -> Result<StreamTower, EditError> {
+    ) -> Result<StreamHierarchy, EditError> {
         let mut decoder = Decoder::new(limits);
         decoder.feed(bytes)?;
-        let mut tower = Self::default();
+        let mut hierarchy = Self::default();
         let mut coarse: Vec<TriMesh> = Vec::new();
         let mut counts = Vec::new();
         while let Some(update) = decoder.step()? {
@@ -122,7 +122,7 @@ impl Tower {
             if update.pass.kind != PassKind::Refine {
                 counts.push(mesh.num_vertices());
                 if mesh.num_vertices() >= num_vertices {
-                    tower.levels.push((mesh.num_vertices(), mesh.triangles().to_vec()));
+                    hierarchy.levels.push((mesh.num_vertices(), mesh.triangles().to_vec()));
                 }
             }
             // Only in the end it is known how many vertices are the same.
@@ -140,11 +140,11 @@ impl Tower {
         // Joined vertices are numbered as they come.
         let num_joined = |count: usize| joined[..count].iter().max().map_or(0, |&last| last as usize + 1);
         let is_it = |count: usize| num_joined(count) == num_vertices;
-        tower.levels.retain(|&(count, _)| num_joined(count) >= num_vertices);
+        hierarchy.levels.retain(|&(count, _)| num_joined(count) >= num_vertices);
         let coarse = coarse.into_iter().find(|coarse| is_it(coarse.num_vertices()));
         let levels = || counts.iter().map(|&count| num_joined(count)).collect();
         let coarse = coarse.ok_or_else(|| EditError::Vertices { found: num_vertices, levels: levels() })?;
-        Ok(StreamTower { tower, coarse, fine, joined })
+        Ok(StreamHierarchy { hierarchy, coarse, fine, joined })
     }
 
     /// Rings of the vertices that M^{level+1} has beyond M^level, counter-clockwise; an open one goes

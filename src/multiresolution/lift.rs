@@ -1,7 +1,7 @@
 //! One level up or down: prediction, frames and update (derived in the module's documentation).
 
 use super::Prediction;
-use super::hierarchy::Tower;
+use super::hierarchy::Hierarchy;
 use super::weights::{closed_ring, open_ring};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -29,9 +29,9 @@ struct Ring<'a> {
 
 impl Split {
     /// The odd vertices of M^{level+1}, whose positions are given.
-    pub(super) fn new(tower: &Tower, level: usize, positions: &[DVec3]) -> Self {
+    pub(super) fn new(hierarchy: &Hierarchy, level: usize, positions: &[DVec3]) -> Self {
         let mut split = Self {
-            num_even: tower.num_vertices(level),
+            num_even: hierarchy.num_vertices(level),
             ends: Vec::new(),
             rings: Vec::new(),
             is_closed: Vec::new(),
@@ -39,7 +39,7 @@ impl Split {
             update: Vec::new(),
         };
         let (mut places, mut weights) = (Vec::new(), Vec::new());
-        tower.rings(level, |vertex, ring, is_closed| {
+        hierarchy.rings(level, |vertex, ring, is_closed| {
             places.clear();
             places.extend(ring.iter().map(|&v| positions[v as usize]));
             let place = positions[vertex as usize];

@@ -44,14 +44,14 @@ mod lift;
 mod weights;
 
 pub use denoise::{Threshold, denoised};
-pub use detail_transfer::{EditError, Edition};
+pub use detail_transfer::{DetailTransfer, EditError};
 
 use crate::descriptors::{Descriptor, Window};
 use crate::error::EncodeError;
 use crate::mesh::TriMesh;
 use crate::simplification::partition::Partition;
 use glam::DVec3;
-use hierarchy::{MeshTower, Tower};
+use hierarchy::{Hierarchy, MeshHierarchy};
 use lift::Split;
 
 /// How the position of an odd vertex is guessed from its ring.
@@ -104,7 +104,7 @@ impl Default for Options {
 /// Its vertices have an order of their own, coarse before fine: M^k has the first ones.
 #[derive(Clone, Debug)]
 pub struct Decomposition {
-    tower: Tower,
+    hierarchy: Hierarchy,
     /// `splits[k]` turns M^k into M^{k+1}.
     splits: Vec<Split>,
     prediction: Prediction,
@@ -126,10 +126,10 @@ impl Decomposition {
     /// # Errors
     /// If the mesh has no usable triangle, or spans more than a double can hold.
     pub fn new(mesh: &TriMesh, options: &Options) -> Result<Self, EncodeError> {
-        let MeshTower { tower, source, unit } = Tower::of_mesh(mesh, options)?;
+        let MeshHierarchy { hierarchy, source, unit } = Hierarchy::of_mesh(mesh, options)?;
         let place = |&v: &u32| DVec3::from_array(mesh.positions()[v as usize]) * unit;
         let positions = source.iter().map(place).collect();
-        let mut decomposition = Self::of_tower(tower, positions, options.prediction, options.update);
+        let mut decomposition = Self::of_hierarchy(hierarchy, positions, options.prediction, options.update);
         decomposition.input = mesh.clone();
         decomposition.source = source;
         decomposition.unit = unit;
@@ -137,22 +137,27 @@ impl Decomposition {
     }
 
     /// Analyses positions of the finest level; `input`, `source` and `unit` are left to the caller.
-    fn of_tower(tower: Tower, positions: Vec<DVec3>, prediction: Prediction, update: bool) -> Self {
+    fn of_hierarchy(
+        hierarchy: Hierarchy,
+        positions: Vec<DVec3>,
+        prediction: Prediction,
+        update: bool,
+    ) -> Self {
         let mut positions = positions;
         let mut masses = vec![1.0; positions.len()];
         let (mut splits, mut details) = (Vec::new(), Vec::new());
-        for k in (0..tower.num_levels()).rev() {
-            let mut split = Split::new(&tower, k, &positions);
+        for k in (0..hierarchy.num_levels()).rev() {
+            let mut split = Split::new(&hierarchy, k, &positions);
             if update {
                 split.set_update(&mut masses);
             }
-            details.push(split.analyse(tower.triangles(k), prediction, &mut positions));
+            details.push(split.analyse(hierarchy.triangles(k), prediction, &mut positions));
             splits.push(split);
         }
         splits.reverse();
         details.reverse();
         let (input, source, unit) = (TriMesh::default(), Vec::new(), 1.0);
-        Self { tower, splits, prediction, base: positions, details, input, source, unit }
+        Self { hierarchy, splits, prediction, base: positions, details, input, source, unit }
     }
 
     /// Number of levels above the base mesh.
@@ -165,7 +170,7 @@ impl Decomposition {
     /// # Panics
     /// If there is no such level.
     pub fn num_vertices(&self, level: usize) -> usize {
-        self.tower.num_vertices(level)
+        self.hierarchy.num_vertices(level)
     }
 
     /// Details that turn M^{level−1} into M^`level`, in model units: two components along the surface, then
@@ -204,7 +209,7 @@ impl Decomposition {
         let mut positions = self.base.clone();
         for k in 0..level {
             self.splits[k].synthesise(
-                self.tower.triangles(k),
+                self.hierarchy.triangles(k),
                 self.prediction,
                 &self.details[k],
                 &mut positions,
@@ -224,7 +229,7 @@ impl Decomposition {
     /// If there is no such level.
     pub fn level_mesh(&self, level: usize) -> TriMesh {
         let positions = self.positions(level).iter().map(|&p| self.model_position(p)).collect();
-        TriMesh::from_valid_parts(positions, self.tower.triangles(level).to_vec())
+        TriMesh::from_valid_parts(positions, self.hierarchy.triangles(level).to_vec())
     }
 
     /// The finest mesh as the details make it, with the vertices and faces of the mesh decomposed, in their

@@ -2,7 +2,7 @@
 //! until it is enclosed, then around the next one. Where the vertices lie follows in [`base_positions`](super::base_positions).
 
 use super::base_positions::Placement;
-use super::work_budget::Work;
+use super::work_budget::WorkBudget;
 use super::{GridMesh, Malformed};
 use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
 use crate::entropy::range_coder::BitCoder;
@@ -50,9 +50,9 @@ pub(crate) fn code<B: BitCoder>(
     target: Option<&BaseTarget>,
 ) -> Result<Base, Malformed> {
     let mut grower = Grower::new(num_vertices, num_faces, precision, mixing, target);
-    grower.code_some(coder, &mut Work::unlimited())?;
+    grower.code_some(coder, &mut WorkBudget::unlimited())?;
     let mut placement = grower.finish()?;
-    placement.code_some(coder, &mut Work::unlimited())?;
+    placement.code_some(coder, &mut WorkBudget::unlimited())?;
     Ok(placement.finish())
 }
 
@@ -168,7 +168,7 @@ impl<'a> Grower<'a> {
     pub(crate) fn code_some<B: BitCoder>(
         &mut self,
         coder: &mut B,
-        work: &mut Work,
+        work: &mut WorkBudget,
     ) -> Result<bool, Malformed> {
         while self.triangles.len() < self.num_faces {
             if !work.take(1) {

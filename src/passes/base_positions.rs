@@ -3,11 +3,11 @@
 
 use super::Malformed;
 use super::base::Base;
-use super::base_traversal::PlacingOrder;
-use super::coding_context::{Fringe, Surroundings};
-use super::coordinate_prediction::VertexGuess;
+use super::base_traversal::BaseTraversal;
+use super::coding_context::{CodingContext, Fringe};
+use super::coordinate_prediction::VertexPrediction;
 use super::coordinates::CoordinateModels;
-use super::work_budget::Work;
+use super::work_budget::WorkBudget;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::mixture::Mixture;
 use crate::entropy::range_coder::BitCoder;
@@ -34,7 +34,7 @@ pub(crate) struct Placement<'a> {
     jump: f32,
     /// The cell decoded last.
     last: [i32; 3],
-    order: PlacingOrder,
+    order: BaseTraversal,
 }
 
 impl<'a> Placement<'a> {
@@ -59,7 +59,7 @@ impl<'a> Placement<'a> {
             fringe,
             jump: length,
             last: [(limit / 2) as i32; 3],
-            order: PlacingOrder::new(num_vertices),
+            order: BaseTraversal::new(num_vertices),
         }
     }
 
@@ -67,9 +67,9 @@ impl<'a> Placement<'a> {
     pub(crate) fn code_some<B: BitCoder>(
         &mut self,
         coder: &mut B,
-        work: &mut Work,
+        work: &mut WorkBudget,
     ) -> Result<bool, Malformed> {
-        let mut surroundings = Surroundings::default();
+        let mut surroundings = CodingContext::default();
         let mesh = &mut self.base.mesh;
         while work.is_left() {
             let Some(vertex) = self.order.next() else {
@@ -80,7 +80,7 @@ impl<'a> Placement<'a> {
             let wanted = self.target.map_or([0; 3], |t| t[self.base.vertex_source[v] as usize]);
             let outlook = surroundings.gather_placed(mesh, vertex, &self.order, &self.fringe);
             if let Some(outlook) = outlook {
-                let mut vertex = VertexGuess::with_outlook(&self.models.guesses, &surroundings, outlook);
+                let mut vertex = VertexPrediction::with_outlook(&self.models.guesses, &surroundings, outlook);
                 let position =
                     self.models.code_vertex(coder, &mut vertex, &surroundings, self.limit, wanted)?;
                 mesh.positions[v] = position;

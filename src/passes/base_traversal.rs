@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 const MOST: usize = 3;
 
 /// Vertices that wait, first come, first served among those with as many parallelograms.
-pub(super) struct PlacingOrder {
+pub(super) struct BaseTraversal {
     is_placed: Vec<bool>,
     /// Parallelograms over known points that end at each vertex, up to [`MOST`].
     counts: Vec<u8>,
@@ -20,7 +20,7 @@ pub(super) struct PlacingOrder {
     corners: Vec<u32>,
 }
 
-impl PlacingOrder {
+impl BaseTraversal {
     pub(super) fn new(num_vertices: usize) -> Self {
         Self {
             is_placed: vec![false; num_vertices],
@@ -92,7 +92,7 @@ mod tests {
             (0..8).map(|i| if i % 2 == 0 { [i, i + 1, i + 2] } else { [i + 1, i, i + 2] }).collect();
         triangles.push([10, 11, 12]);
         let surface = Surface::from_triangles(triangles, 13).unwrap();
-        let mut order = PlacingOrder::new(13);
+        let mut order = BaseTraversal::new(13);
         let mut found = Vec::new();
         while let Some(v) = order.next() {
             order.place(&surface, v);
@@ -103,7 +103,7 @@ mod tests {
         // Around a hexagon's middle: the last corner completes two triangles with parallelograms.
         let fan: Vec<[u32; 3]> = (0..6).map(|i| [6, i, (i + 1) % 6]).collect();
         let surface = Surface::from_triangles(fan, 7).unwrap();
-        let mut order = PlacingOrder::new(7);
+        let mut order = BaseTraversal::new(7);
         for v in [6, 0, 1] {
             order.place(&surface, v);
         }

@@ -1,7 +1,7 @@
 //! The known positions around a vertex that is coded now (`format/SPEC.md`, section 8.1).
 
 use super::GridMesh;
-use super::base_traversal::PlacingOrder;
+use super::base_traversal::BaseTraversal;
 use super::patch::Patches;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::prediction::ring_context::{Neighbourhood, Outlook, PartOfRing};
@@ -15,7 +15,7 @@ const MAX_REFINED_RING: usize = 32;
 
 /// The neighbourhood of one vertex, and how large its neighbours' residuals were.
 #[derive(Default)]
-pub(crate) struct Surroundings {
+pub(crate) struct CodingContext {
     pub(crate) neighbourhood: Neighbourhood,
     /// Cell of the first neighbour; points are relative to it.
     pub(crate) origin: [i32; 3],
@@ -45,7 +45,7 @@ pub(crate) struct Fringe {
     pub(crate) edge: f32,
 }
 
-impl Surroundings {
+impl CodingContext {
     /// Looks around the vertex that `patch` brought back, the next one without a position.
     pub(crate) fn gather_odd(&mut self, mesh: &GridMesh, patches: &Patches, patch: usize) {
         let vertex = mesh.positions.len();
@@ -86,7 +86,7 @@ impl Surroundings {
         &mut self,
         mesh: &GridMesh,
         vertex: u32,
-        order: &PlacingOrder,
+        order: &BaseTraversal,
         fringe: &Fringe,
     ) -> Option<Outlook> {
         let surface = &mesh.surface;

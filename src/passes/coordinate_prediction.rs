@@ -1,7 +1,7 @@
 //! From a neighbourhood to the density of each coordinate (`format/SPEC.md`, section 8.3): experts,
 //! each with a scale that follows a linear model, weighed by how well they did.
 
-use super::coding_context::{NUM_CLASSES, Surroundings};
+use super::coding_context::{CodingContext, NUM_CLASSES};
 use crate::entropy::mixture::Mixture;
 pub(crate) use crate::entropy::residual::NUM_KINDS;
 use crate::entropy::tables::{exp2, index_below, log2};
@@ -46,7 +46,7 @@ pub(super) const MAX_CENTRE: f32 = 1e9;
 
 /// What is learnt about coordinates; kept from pass to pass.
 #[derive(Clone)]
-pub(crate) struct GuessModels {
+pub(crate) struct PredictionModels {
     /// Per class: the filter of the coordinates along the surface and of the one across it.
     filters: Vec<[AffineFilter; 2]>,
     scales: [ScaleModel; NUM_KINDS],
@@ -71,7 +71,7 @@ impl Repeated {
     }
 }
 
-impl GuessModels {
+impl PredictionModels {
     pub(crate) fn new() -> Self {
         Self {
             filters: vec![[AffineFilter::new(), AffineFilter::new()]; NUM_CLASSES],
@@ -119,8 +119,8 @@ impl ScaleModel {
 }
 
 /// The guess at one vertex, coordinate after coordinate. Lanes are axes.
-pub(crate) struct VertexGuess<'a> {
-    surroundings: &'a Surroundings,
+pub(crate) struct VertexPrediction<'a> {
+    surroundings: &'a CodingContext,
     /// Axes in coding order.
     axes: [usize; 3],
     /// Slopes of the surface over the axes coded first; 0 for the last one.
@@ -144,7 +144,7 @@ pub(crate) struct VertexGuess<'a> {
 }
 
 /// The guess at one coordinate. Lanes are experts.
-pub(crate) struct CoordinateGuess {
+pub(crate) struct CoordinatePrediction {
     pub(crate) axis: usize,
     /// Seen from the origin of the surroundings.
     pub(crate) mixture: Mixture,
@@ -167,18 +167,18 @@ pub(crate) struct CoordinateGuess {
     repeated_class: [usize; 2],
 }
 
-impl<'a> VertexGuess<'a> {
+impl<'a> VertexPrediction<'a> {
     /// Guesses all three coordinates as far as that is possible before one of them is known.
     #[inline(always)]
-    pub(crate) fn new(models: &GuessModels, surroundings: &'a Surroundings) -> Self {
+    pub(crate) fn new(models: &PredictionModels, surroundings: &'a CodingContext) -> Self {
         Self::with_outlook(models, surroundings, surroundings.neighbourhood.outlook())
     }
 
     /// The same where the outlook is not that of a whole ring.
     #[inline(always)]
     pub(crate) fn with_outlook(
-        models: &GuessModels,
-        surroundings: &'a Surroundings,
+        models: &PredictionModels,
+        surroundings: &'a CodingContext,
         outlook: Outlook,
     ) -> Self {
         let around = &surroundings.neighbourhood;
@@ -233,7 +233,7 @@ impl<'a> VertexGuess<'a> {
 
     /// Guesses the coordinate of `kind`; those before it have been [settled](Self::settle).
     #[inline(always)]
-    pub(crate) fn coordinate(&self, models: &GuessModels, kind: usize) -> CoordinateGuess {
+    pub(crate) fn coordinate(&self, models: &PredictionModels, kind: usize) -> CoordinatePrediction {
         let axis = self.axes[kind];
         let known = if kind == ACROSS { self.slopes.dot3(self.position) } else { 0.0 };
         let [ring_along, ring_across, tips_along, tips_across] = self.by_neighbours.0;
@@ -270,7 +270,7 @@ impl<'a> VertexGuess<'a> {
         let weight = models.repeated[kind][by_count][by_distance].weight;
         let best = if weight > REPEATED_LEADS { REPEATED } else { mixture.best() };
         mixture.weight.0[REPEATED] = weight;
-        CoordinateGuess {
+        CoordinatePrediction {
             axis,
             mixture,
             best,
@@ -309,8 +309,8 @@ impl<'a> VertexGuess<'a> {
     #[inline(always)]
     pub(crate) fn settle(
         &mut self,
-        models: &mut GuessModels,
-        guess: &CoordinateGuess,
+        models: &mut PredictionModels,
+        guess: &CoordinatePrediction,
         kind: usize,
         value: i32,
     ) {

@@ -4,7 +4,7 @@
 use super::Malformed;
 use super::coordinate_prediction::{ACROSS, axis_order, slopes};
 use super::patch::{Patches, Star};
-use super::work_budget::Work;
+use super::work_budget::WorkBudget;
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::streams::stream;
 use crate::entropy::tables::{index_below, log2, round_half_up};
@@ -110,7 +110,7 @@ pub(crate) fn refine_some<B: BitCoder>(
     positions: &mut [[i32; 3]],
     next: &mut usize,
     target: Option<&[[i32; 3]]>,
-    work: &mut Work,
+    work: &mut WorkBudget,
 ) -> bool {
     for (v, position) in positions.iter_mut().enumerate().skip(*next) {
         if !work.take(1) {

@@ -3,7 +3,7 @@
 //! Counted, not timed: there is no clock on every platform, and a count is the same on all.
 
 /// Units of work: an edge or a triangle looked at, each a fraction of a microsecond.
-pub(crate) struct Work {
+pub(crate) struct WorkBudget {
     limit: i64,
     /// Below zero if the last thing done was more than was left.
     left: i64,
@@ -12,7 +12,7 @@ pub(crate) struct Work {
 /// Elements of an array that is gone through at one go, per unit.
 pub(crate) const SWEPT_PER_UNIT: usize = 64;
 
-impl Work {
+impl WorkBudget {
     pub(crate) fn units(units: u32) -> Self {
         Self { limit: i64::from(units), left: i64::from(units) }
     }

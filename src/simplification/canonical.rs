@@ -2,7 +2,7 @@
 //! of `format/SPEC.md`, section 7.2, over the surface with its odd vertices. Holes are closed in the
 //! reverse order, so that a decoder finds around each patch the valences that chose its triangles.
 
-use super::ShrinkingSurface;
+use super::SurfaceEditor;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use bitvec::vec::BitVec;
@@ -71,7 +71,7 @@ impl Anchors {
 /// The odd vertices in the order in which the walk meets them: of each the corner that faces the
 /// gate. `faces` are the slots that hold one.
 pub(crate) fn patch_order(
-    shrinking: &ShrinkingSurface,
+    shrinking: &SurfaceEditor,
     faces: &[u32],
     odd: &BitVec,
     anchors: &Anchors,

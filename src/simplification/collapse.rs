@@ -2,7 +2,7 @@
 //! of the boundary and of the sides of faces).
 
 use super::geometry::{area_vector, is_same_side};
-use super::surface_editor::{ShrinkingSurface, Star};
+use super::surface_editor::{Star, SurfaceEditor};
 
 /// Scratch space of the tests.
 #[derive(Default)]
@@ -16,7 +16,7 @@ impl CollapseTest {
     /// `grid` decides legality, `positions` the lengths.
     pub(crate) fn shortest_legal(
         &mut self,
-        surface: &ShrinkingSurface,
+        surface: &SurfaceEditor,
         star: &Star,
         grid: &[[i32; 3]],
         positions: &[[f64; 3]],
@@ -45,12 +45,12 @@ impl CollapseTest {
 }
 
 /// Legality of the collapse of the star's vertex into `ring[target]`.
-pub(crate) fn is_legal(surface: &ShrinkingSurface, star: &Star, target: usize, grid: &[[i32; 3]]) -> bool {
+pub(crate) fn is_legal(surface: &SurfaceEditor, star: &Star, target: usize, grid: &[[i32; 3]]) -> bool {
     makes_new_edges(surface, star, target) && keeps_sides(star, target, grid)
 }
 
 /// Whether the collapse leaves a surface. Removals of other vertices change that.
-pub(crate) fn makes_new_edges(surface: &ShrinkingSurface, star: &Star, target: usize) -> bool {
+pub(crate) fn makes_new_edges(surface: &SurfaceEditor, star: &Star, target: usize) -> bool {
     let degree = star.degree();
     let u = star.ring[target];
     let others = |offset: usize| star.ring[(target + offset) % degree];
@@ -86,7 +86,7 @@ pub(crate) fn keeps_sides(star: &Star, target: usize, grid: &[[i32; 3]]) -> bool
 }
 
 /// True if a face outside the closed star of degree three has the same three vertices.
-pub(crate) fn is_tetrahedral(surface: &ShrinkingSurface, star: &Star) -> bool {
+pub(crate) fn is_tetrahedral(surface: &SurfaceEditor, star: &Star) -> bool {
     let o = surface.surface.across(star.corners[0]);
     o != crate::mesh::surface::NO_CORNER && surface.surface.vertex(o) == star.ring[2]
 }

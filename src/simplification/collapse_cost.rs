@@ -3,14 +3,14 @@
 
 use super::quadrics::ErrorMemory;
 use super::retriangulate::{HoleFiller, Prospect};
-use super::{ShrinkingSurface, Star};
+use super::{Star, SurfaceEditor};
 use rayon::prelude::*;
 
 /// Vertices that one thread looks at.
 const GROUP: usize = 1 << 8;
 
 /// What is known of the stars of some vertices.
-pub(crate) struct Outlook {
+pub(crate) struct CollapseCosts {
     /// Place of each vertex of the surface among the stars.
     places: Vec<u32>,
     groups: Vec<Group>,
@@ -35,10 +35,10 @@ pub(crate) struct Ahead {
     pub(crate) prospect: Option<Prospect>,
 }
 
-impl Outlook {
+impl CollapseCosts {
     /// Looks at `vertices`, at the fans that may close their holes only if `see_fans`.
     pub(crate) fn new(
-        surface: &ShrinkingSurface,
+        surface: &SurfaceEditor,
         grid: &[[i32; 3]],
         positions: &[[f64; 3]],
         memory: &ErrorMemory,
@@ -75,7 +75,7 @@ impl Outlook {
 
 impl Group {
     fn new(
-        surface: &ShrinkingSurface,
+        surface: &SurfaceEditor,
         grid: &[[i32; 3]],
         positions: &[[f64; 3]],
         memory: &ErrorMemory,

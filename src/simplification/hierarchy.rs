@@ -5,7 +5,7 @@ use super::level::Level;
 use super::partition::{Geometry, Partition, Ranked, is_coarse, remove_level};
 use super::quadrics::ErrorMemory;
 use super::vertex_selection::{Optimize, Saliency, Thinning};
-use super::{LevelRecord, Rings, Seams, ShrinkingSurface};
+use super::{LevelRecord, Rings, Seams, SurfaceEditor};
 use crate::descriptors::{Descriptor, Evaluation, Features, Window};
 use crate::mesh::{Surface, TriMesh};
 use bitvec::vec::BitVec;
@@ -46,7 +46,7 @@ pub(crate) struct Descent<'a> {
     features: Option<Features>,
     /// l̄ of the finest level, in the units of the geometry.
     mean_edge: f64,
-    shrinking: ShrinkingSurface,
+    shrinking: SurfaceEditor,
     memory: ErrorMemory<'a>,
     anchors: Anchors,
     seams: Seams,
@@ -60,7 +60,7 @@ impl<'a> Descent<'a> {
     pub(crate) fn new(surface: Surface, geometry: Geometry<'a>, settings: Settings, glued: BitVec) -> Self {
         let memory = ErrorMemory::new(&surface, geometry.positions);
         let anchors = Anchors::new(&surface, glued);
-        let shrinking = ShrinkingSurface::new(surface);
+        let shrinking = SurfaceEditor::new(surface);
         let level = Level::collect(&shrinking);
         let (features, mean_edge, depth, is_over, seams) = (None, 0.0, 0, false, Seams::default());
         Self {

@@ -1,6 +1,6 @@
 //! One level of a surface that shrinks, as a mesh without gaps.
 
-use super::ShrinkingSurface;
+use super::SurfaceEditor;
 use super::surface_editor::FREE;
 use crate::mesh::{Surface, TriMesh};
 use rayon::prelude::*;
@@ -17,19 +17,19 @@ pub(crate) struct Level {
 
 impl Level {
     /// What is there of a surface.
-    pub(crate) fn collect(shrinking: &ShrinkingSurface) -> Self {
+    pub(crate) fn collect(shrinking: &SurfaceEditor) -> Self {
         let Surface { corner_of, triangles, .. } = &shrinking.surface;
         Self::among(shrinking, 0..corner_of.len() as u32, 0..triangles.len() as u32)
     }
 
     /// What is left of this level.
-    pub(crate) fn coarser(&self, shrinking: &ShrinkingSurface) -> Self {
+    pub(crate) fn coarser(&self, shrinking: &SurfaceEditor) -> Self {
         Self::among(shrinking, self.vertices.iter().copied(), self.faces.iter().copied())
     }
 
     /// What is there among these vertices and slots, which ascend.
     fn among(
-        shrinking: &ShrinkingSurface,
+        shrinking: &SurfaceEditor,
         vertices: impl Iterator<Item = u32> + Send,
         slots: impl Iterator<Item = u32> + Send,
     ) -> Self {

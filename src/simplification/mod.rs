@@ -23,4 +23,4 @@ pub(crate) mod vertex_selection;
 pub(crate) use record::LevelRecord;
 pub(crate) use rings::Rings;
 pub(crate) use seams::Seams;
-pub(crate) use surface_editor::{ShrinkingSurface, Star};
+pub(crate) use surface_editor::{Star, SurfaceEditor};

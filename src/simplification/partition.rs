@@ -4,13 +4,13 @@
 use super::bucket_queue::{ClassQueue, PackingClasses};
 use super::canonical::{Anchors, patch_order};
 use super::collapse::CollapseTest;
-use super::collapse_cost::Outlook;
+use super::collapse_cost::CollapseCosts;
 use super::level::Level;
 use super::quadrics::ErrorMemory;
 use super::retriangulate::HoleFiller;
 use super::seams::{Demand, may_go};
 use super::vertex_selection::{Optimize, Saliency, Thinning, score_keys};
-use super::{LevelRecord, Rings, Seams, ShrinkingSurface, Star};
+use super::{LevelRecord, Rings, Seams, Star, SurfaceEditor};
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 
@@ -56,7 +56,7 @@ pub(crate) struct Geometry<'a> {
 pub(crate) fn remove_level(
     optimize: Optimize,
     max_valence: Option<u32>,
-    surface: &mut ShrinkingSurface,
+    surface: &mut SurfaceEditor,
     geometry: Geometry,
     memory: &mut ErrorMemory,
     anchors: &Anchors,
@@ -108,7 +108,7 @@ pub(crate) enum Ranked {
 /// Removes the vertices of `order` one after the other, unless a neighbour went before or no collapse is
 /// legal, as Algorithm 1 does. `memory` is told.
 pub(crate) fn remove_in_order(
-    surface: &mut ShrinkingSurface,
+    surface: &mut SurfaceEditor,
     geometry: Geometry,
     order: &[u32],
     mut memory: Option<&mut ErrorMemory>,
@@ -143,7 +143,7 @@ pub(crate) fn remove_in_order(
 /// the order then differs.
 #[expect(clippy::too_many_arguments, reason = "as above")]
 fn remove_as_decoded(
-    surface: &mut ShrinkingSurface,
+    surface: &mut SurfaceEditor,
     geometry: Geometry,
     faces: &[u32],
     mut chosen: Vec<u32>,
@@ -159,7 +159,7 @@ fn remove_as_decoded(
     chosen.sort_unstable();
     let (order, outlook) = rayon::join(
         || patch_order(surface, faces, &odd, anchors),
-        || Outlook::new(surface, grid, positions, memory, &chosen, see_fans),
+        || CollapseCosts::new(surface, grid, positions, memory, &chosen, see_fans),
     );
     let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;
     let (ears, patches): (Vec<u32>, Vec<u32>) = order.into_iter().rev().partition(is_ear);
@@ -192,7 +192,7 @@ fn remove_as_decoded(
 /// What the seams want of the hole of a star, as far as there is a hole that meets it.
 fn demand_that_is_met(
     seams: &Seams,
-    surface: &ShrinkingSurface,
+    surface: &SurfaceEditor,
     Geometry { grid, positions }: Geometry,
     star: &Star,
     tolerance: f64,
@@ -226,7 +226,7 @@ fn places_by_score(vertices: &[u32], scores: &[f64]) -> Vec<u32> {
 
 /// Whether so few vertices are left that they may as well be the base, if seams want them. The smallest file is the one
 /// whose seams are kept, unless there are only seams from the start.
-pub(crate) fn is_coarse(optimize: Optimize, num_vertices: usize, surface: &ShrinkingSurface) -> bool {
+pub(crate) fn is_coarse(optimize: Optimize, num_vertices: usize, surface: &SurfaceEditor) -> bool {
     let num_finest = surface.surface.corner_of.len();
     let share = if optimize == Optimize::Size { 0.999 } else { 1.0 / 32.0 };
     num_vertices as f64 <= share * num_finest as f64
@@ -236,7 +236,7 @@ pub(crate) fn is_coarse(optimize: Optimize, num_vertices: usize, surface: &Shrin
 /// everywhere they are no reason to stay.
 fn leave_seams(
     optimize: Optimize,
-    surface: &ShrinkingSurface,
+    surface: &SurfaceEditor,
     seams: &mut Seams,
     vertices: &[u32],
     free: &mut Vec<u32>,

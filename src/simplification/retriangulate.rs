@@ -8,7 +8,7 @@ use super::collapse::{is_legal, keeps_sides, makes_new_edges};
 use super::deviation::Deviation;
 use super::seams::Demand;
 use super::triangulate::EarClipper;
-use super::{ShrinkingSurface, Star};
+use super::{Star, SurfaceEditor};
 
 /// A vertex stays for now if the best legal hole deviates so many times more (squared) than the best of all:
 /// what is illegal this time was what the vertex was judged by.
@@ -70,7 +70,7 @@ impl HoleFiller {
     /// `demand` count.
     pub(crate) fn fill(
         &mut self,
-        surface: &ShrinkingSurface,
+        surface: &SurfaceEditor,
         star: &Star,
         grid: &[[i32; 3]],
         positions: &[[f64; 3]],
@@ -131,7 +131,7 @@ impl HoleFiller {
     /// The same as [`fill`](Self::fill) with no demand, if all that was foreseen comes true.
     pub(crate) fn fill_as_foreseen(
         &mut self,
-        surface: &ShrinkingSurface,
+        surface: &SurfaceEditor,
         star: &Star,
         grid: &[[i32; 3]],
         positions: &[[f64; 3]],
@@ -184,7 +184,7 @@ impl HoleFiller {
     /// The hole that is cheap to code, unless the best fan is much better.
     fn choose(
         &mut self,
-        surface: &ShrinkingSurface,
+        surface: &SurfaceEditor,
         star: &Star,
         grid: &[[i32; 3]],
         tolerance: f64,
@@ -244,7 +244,7 @@ mod tests {
         let positions = grid.map(|p| p.map(f64::from));
         let fill = |triangles: &[[u32; 3]], num_vertices, seam: Option<[u32; 2]>| {
             let surface = Surface::from_triangles(triangles.to_vec(), num_vertices).unwrap();
-            let surface = ShrinkingSurface::new(surface);
+            let surface = SurfaceEditor::new(surface);
             let mut star = Star::default();
             surface.read_star(0, &mut star);
             let place = |v: u32| star.ring.iter().position(|&u| u == v).unwrap();

@@ -1,6 +1,6 @@
 //! The neighbours of all vertices of a level in one flat table: cheaper to visit again and again than the corners.
 
-use super::ShrinkingSurface;
+use super::SurfaceEditor;
 use rayon::prelude::*;
 
 /// Vertices whose rings one thread reads.
@@ -18,7 +18,7 @@ pub(crate) struct Rings {
 
 impl Rings {
     /// `vertices` are those of the level.
-    pub(crate) fn new(surface: &ShrinkingSurface, vertices: &[u32]) -> Self {
+    pub(crate) fn new(surface: &SurfaceEditor, vertices: &[u32]) -> Self {
         let mut place_of = vec![0_u32; surface.surface.corner_of.len()];
         vertices.iter().zip(0..).for_each(|(&v, place)| place_of[v as usize] = place);
         let mut first = Vec::with_capacity(vertices.len() + 1);

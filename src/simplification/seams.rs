@@ -14,7 +14,7 @@
 //!
 //! Vertices where seams end or meet had better stay. They need not: what is not right is said triangle by triangle.
 
-use super::{LevelRecord, ShrinkingSurface, Star};
+use super::{LevelRecord, Star, SurfaceEditor};
 use crate::mesh::Domain;
 use crate::mesh::surface::{next, prev};
 
@@ -183,7 +183,7 @@ impl Seams {
     }
 
     /// The vertex of `star` has gone: notes in `record` what its faces had, and gives rows to the triangles of the
-    /// hole, which stand in the star's first faces. `ears` as in [`ShrinkingSurface::remove`].
+    /// hole, which stand in the star's first faces. `ears` as in [`SurfaceEditor::remove`].
     pub(crate) fn remove(&mut self, star: &Star, ears: &[usize], record: &mut LevelRecord) {
         if self.is_empty() {
             return;
@@ -284,7 +284,7 @@ fn edge_of(places: [usize; 3], degree: usize, diagonal: Option<Diagonal>) -> usi
 }
 
 /// Whether the seams let the vertex of a star go, and the diagonal they want then.
-pub(crate) fn may_go(seams: &Seams, surface: &ShrinkingSurface, vertex: u32, star: &mut Star) -> bool {
+pub(crate) fn may_go(seams: &Seams, surface: &SurfaceEditor, vertex: u32, star: &mut Star) -> bool {
     surface.read_star(vertex, star);
     seams.demand(star) != Demand::Stay
 }
@@ -308,7 +308,7 @@ mod tests {
     #[test]
     fn a_seam_through_a_vertex_becomes_a_diagonal() {
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
-        let surface = ShrinkingSurface::new(Surface::from_triangles(triangles, 7).unwrap());
+        let surface = SurfaceEditor::new(Surface::from_triangles(triangles, 7).unwrap());
         let mut star = Star::default();
         surface.read_star_from(2, &mut star);
         assert_eq!(star.ring, [0, 1, 2, 3, 4, 5]);
@@ -330,7 +330,7 @@ mod tests {
     #[test]
     fn ends_and_meetings_of_seams_stay() {
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
-        let surface = ShrinkingSurface::new(Surface::from_triangles(triangles, 7).unwrap());
+        let surface = SurfaceEditor::new(Surface::from_triangles(triangles, 7).unwrap());
         let mut star = Star::default();
         let mut demand = |faces: [u32; 6], times: usize| {
             let mut seams = Seams::default();

@@ -29,7 +29,7 @@ impl Star {
 }
 
 /// Surface with slots that become free.
-pub(crate) struct ShrinkingSurface {
+pub(crate) struct SurfaceEditor {
     pub(crate) surface: Surface,
     num_vertices: usize,
     num_faces: usize,
@@ -49,7 +49,7 @@ fn bit(vertex: u32) -> u32 {
     1 << (vertex.wrapping_mul(0x9e37_79b1) >> 27)
 }
 
-impl ShrinkingSurface {
+impl SurfaceEditor {
     pub(crate) fn new(surface: Surface) -> Self {
         let mut acquaintances = vec![0; surface.corner_of.len()];
         for &[a, b, c] in &surface.triangles {
@@ -260,7 +260,7 @@ mod tests {
     use super::*;
 
     /// Rebuilds adjacency from the triangles that are left and compares.
-    fn check(shrinking: &ShrinkingSurface) {
+    fn check(shrinking: &SurfaceEditor) {
         let mut name = vec![u32::MAX; shrinking.surface.corner_of.len()];
         let mut count = 0;
         for (v, n) in name.iter_mut().enumerate() {
@@ -286,7 +286,7 @@ mod tests {
                 assert_eq!(shrinking.surface.valence[v], rebuilt.valence[n as usize], "valence of {v}");
                 let (mut a, mut b) = (Star::default(), Star::default());
                 shrinking.read_star(v as u32, &mut a);
-                ShrinkingSurface::new(rebuilt.clone()).read_star(n, &mut b);
+                SurfaceEditor::new(rebuilt.clone()).read_star(n, &mut b);
                 assert_eq!((a.is_closed(), a.degree()), (b.is_closed(), b.degree()));
             }
         }
@@ -304,7 +304,7 @@ mod tests {
             })
             .collect();
         let surface = Surface::from_triangles(triangles, (n * n) as usize).unwrap();
-        let mut shrinking = ShrinkingSurface::new(surface);
+        let mut shrinking = SurfaceEditor::new(surface);
         let mut star = Star::default();
         // Inside, on an edge, and at a corner of valence two.
         for (vertex, ears) in [(at(2, 2), vec![1, 2, 3, 4]), (at(0, 3), vec![1, 2]), (at(0, 5), vec![])] {
@@ -323,7 +323,7 @@ mod tests {
         let rim = |i: u32| 2 + i % n;
         let triangles = (0..n).flat_map(|i| [[0, rim(i), rim(i + 1)], [1, rim(i + 1), rim(i)]]).collect();
         let surface = Surface::from_triangles(triangles, 2 + n as usize).unwrap();
-        let mut shrinking = ShrinkingSurface::new(surface);
+        let mut shrinking = SurfaceEditor::new(surface);
         assert!(!shrinking.has_edge(0, 1));
         let mut star = Star::default();
         shrinking.read_star(5, &mut star);
@@ -341,7 +341,7 @@ mod tests {
         let triangles: Vec<[u32; 3]> =
             (0..n).flat_map(|i| [[0, rim(i), rim(i + 1)], [1, rim(i + 1), rim(i)]]).collect();
         let surface = Surface::from_triangles(triangles, 2 + n as usize).unwrap();
-        let mut shrinking = ShrinkingSurface::new(surface);
+        let mut shrinking = SurfaceEditor::new(surface);
         // Hub 1 goes into vertex 2, which then has all others of the rim as neighbours, and hub 0.
         let mut star = Star::default();
         shrinking.read_star(1, &mut star);

@@ -5,7 +5,7 @@
 use super::collapse::is_tetrahedral;
 use super::geometry::{area_vector, is_same_side};
 use super::seams::Demand;
-use super::surface_editor::{ShrinkingSurface, Star};
+use super::surface_editor::{Star, SurfaceEditor};
 use crate::mesh::ears::{Bytes, Ear, Hole, IN_ORDER, MAX_CORNERS, MAX_VALENCE};
 use crate::util::simd4::Cell;
 
@@ -25,7 +25,7 @@ impl EarClipper {
     /// triangle on its side, every new edge new and the `demand` met. `grid` decides the sides.
     pub(crate) fn clip(
         &mut self,
-        surface: &ShrinkingSurface,
+        surface: &SurfaceEditor,
         star: &Star,
         grid: &[[i32; 3]],
         demand: Demand,
@@ -61,7 +61,7 @@ impl EarClipper {
 }
 
 /// Valences of the corners of the hole. The ends of an open star get the edge that closes it.
-fn valences(surface: &ShrinkingSurface, star: &Star) -> Bytes {
+fn valences(surface: &SurfaceEditor, star: &Star) -> Bytes {
     let mut valences = Bytes::default();
     for (i, &v) in star.ring.iter().enumerate() {
         let is_end = !star.is_closed() && (i == 0 || i + 1 == star.degree());

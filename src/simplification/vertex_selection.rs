@@ -1,7 +1,7 @@
 //! Which vertices of a level may go: those of little saliency, the error of the best collapse, between half and twice
 //! as much by the rank of the descriptor.
 
-use super::ShrinkingSurface;
+use super::SurfaceEditor;
 use rayon::prelude::*;
 
 /// What the balanced partition gives up for what.
@@ -57,7 +57,7 @@ impl Thinning {
     }
 
     /// Of a level of so many vertices.
-    pub(crate) fn of_level(optimize: Optimize, num_vertices: usize, surface: &ShrinkingSurface) -> Self {
+    pub(crate) fn of_level(optimize: Optimize, num_vertices: usize, surface: &SurfaceEditor) -> Self {
         let num_finest = surface.surface.corner_of.len();
         Self::of(optimize, num_vertices as f64 > FINE_SHARE * num_finest as f64)
     }

@@ -11,7 +11,7 @@ use crate::entropy::tables::Tables;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::mesh::{Domain, NO_ROW, Semantic, Surface};
 use crate::passes::patch::Patches;
-use crate::passes::work_budget::Work;
+use crate::passes::work_budget::WorkBudget;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
 use crate::util::simd4::Lanes;
 
@@ -161,7 +161,7 @@ impl Layer {
         brought: Brought,
         place: &mut usize,
         truth: Option<Truth>,
-        work: &mut Work,
+        work: &mut WorkBudget,
         desk: &mut Desk,
     ) -> Result<bool, Malformed> {
         let Brought { mesh, patches, first } = brought;
