@@ -84,7 +84,7 @@ PARTS = {
         (THINNING, r"let num_vertices = errors\.len\(\);", "let num_vertices = errors.len(); let mut errors = vec![1.0; num_vertices];"),
     ],
     "Choice: the descriptor": [
-        (THINNING, r"\(2\.0 \* rank - 1\.0\)\.exp2\(\)", "{ let _ = rank; 1.0 }"),
+        (THINNING, r"libm::exp2\(2\.0 \* rank - 1\.0\)", "{ let _ = rank; 1.0 }"),
     ],
     "Choice: creases stay where flat parts can go": [
         (THINNING, r"Some\(OUTLIER\)", "Some(OUTLIER).filter(|_| false)"),

@@ -1,5 +1,5 @@
-//! The grid of the codec (`NOTES`, "Grid": per-axis minimum, the longest side divided into 2^q − 1
-//! steps, halves rounded up).
+//! The grid of the codec (`format/SPEC.md`, section 4.1): per-axis minimum, the longest side divided into 2^q − 1
+//! steps, halves rounded up.
 
 use crate::bitstream::header::Grid;
 use crate::error::EncodeError;

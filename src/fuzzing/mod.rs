@@ -1,4 +1,4 @@
-//! Bodies of the fuzz targets in `fuzz/`, shared with `tests/findings.rs`. Not part of the API.
+//! Bodies of the fuzz targets in `fuzz/`, shared with `tests/fuzz_regressions.rs`. Not part of the API.
 //!
 //! Each takes any bytes and panics if a promise of the library does not hold.
 

@@ -1,73 +1,27 @@
-//! The modules import in one direction only, and each no more than it is meant to.
+//! The rooms of `src/` import in one direction only, and each no more than `docs/architecture.md` says.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// What each module may import, lowest first: nothing from below its own line.
-const LAYERS: [(&str, &[&str]); 25] = [
-    ("error", &[]),
-    ("limits", &["error"]),
-    ("lanes", &[]),
-    ("morton", &[]),
-    ("parallel", &[]),
-    ("bitstream", &["lanes"]),
-    ("profile", &["bitstream"]),
-    ("mesh", &["lanes", "parallel"]),
-    ("scene", &["bitstream", "mesh"]),
-    ("io", &["mesh"]),
-    ("metrics", &["mesh"]),
-    ("render", &["mesh"]),
-    ("descriptors", &["mesh", "morton"]),
-    ("lifting", &["lanes"]),
-    ("simplify", &["lanes", "mesh"]),
-    ("levels", &["mesh", "simplify"]),
-    ("thinning", &["simplify"]),
-    ("partition", &["levels", "mesh", "simplify", "thinning"]),
-    ("descent", &["descriptors", "levels", "mesh", "partition", "simplify", "thinning"]),
-    ("passes", &["bitstream", "lanes", "lifting", "mesh"]),
-    ("decoder", &["bitstream", "error", "limits", "mesh", "passes", "profile", "scene"]),
-    (
-        "encoder",
-        &[
-            "bitstream",
-            "decoder",
-            "descent",
-            "descriptors",
-            "error",
-            "limits",
-            "mesh",
-            "morton",
-            "partition",
-            "passes",
-            "profile",
-            "scene",
-            "simplify",
-        ],
-    ),
-    (
-        "decomposition",
-        &["decoder", "descent", "descriptors", "encoder", "error", "levels", "limits", "mesh", "partition"],
-    ),
-    ("experiment", &["descriptors", "encoder", "error", "levels", "mesh", "partition", "simplify"]),
-    // Reaches into everything, and is no part of the library.
-    (
-        "fuzzing",
-        &[
-            "bitstream",
-            "decoder",
-            "descriptors",
-            "encoder",
-            "error",
-            "io",
-            "limits",
-            "mesh",
-            "partition",
-            "passes",
-            "profile",
-        ],
-    ),
-];
+/// The page whose first table says what each room may import, lowest first.
+const PAGE: &str = include_str!("../docs/architecture.md");
+
+/// The table of the page: each room with those it may import.
+fn rooms() -> Vec<(&'static str, Vec<&'static str>)> {
+    let names = |cell: &'static str| cell.split('`').skip(1).step_by(2).collect::<Vec<_>>();
+    let rows = PAGE.lines().skip_while(|line| !line.starts_with("| room |")).skip(2);
+    let rows = rows.take_while(|line| line.starts_with('|'));
+    let rooms: Vec<_> = rows
+        .map(|row| {
+            let cells: Vec<&str> = row.split('|').collect();
+            assert_eq!(cells.len(), 5, "{row}");
+            (names(cells[1])[0], names(cells[2]))
+        })
+        .collect();
+    assert!(rooms.len() > 15, "the page has a table of {} rooms", rooms.len());
+    rooms
+}
 
 /// The program: a crate of its own that uses the public API.
 const PROGRAM: [&str; 2] = ["main", "cli"];
@@ -155,16 +109,21 @@ fn exports() -> BTreeMap<String, String> {
 
 #[test]
 fn the_table_has_one_direction() {
-    for (i, (module, imports)) in LAYERS.iter().enumerate() {
-        for import in *imports {
-            assert!(LAYERS[..i].iter().any(|(m, _)| m == import), "{module} imports {import}");
+    let rooms = rooms();
+    for (i, (room, imports)) in rooms.iter().enumerate() {
+        assert!(rooms[..i].iter().all(|(other, _)| other != room), "{room} is there twice");
+        for import in imports {
+            assert!(rooms[..i].iter().any(|(other, _)| other == import), "{room} imports {import}");
         }
     }
 }
 
 #[test]
-fn every_module_imports_what_the_table_allows() {
-    let exports = exports();
+fn rooms_import_what_the_table_allows_and_all_of_it() {
+    let (exports, rooms) = (exports(), rooms());
+    let mut unused: BTreeSet<(&str, &str)> =
+        rooms.iter().flat_map(|(room, imports)| imports.iter().map(move |import| (*room, *import))).collect();
+    let mut empty: BTreeSet<&str> = rooms.iter().map(|(room, _)| *room).collect();
     let mut num_imports = 0;
     for (module, path, code) in sources() {
         if module == "lib" {
@@ -175,25 +134,57 @@ fn every_module_imports_what_the_table_allows() {
             assert!(imports.iter().all(|i| i == "cli"), "{} imports {imports:?}", path.display());
             continue;
         }
-        let Some((_, allowed)) = LAYERS.iter().find(|(name, _)| *name == module) else {
-            panic!("{} belongs to no layer", path.display());
+        let Some((room, allowed)) = rooms.iter().find(|(name, _)| *name == module) else {
+            panic!("{} belongs to no room", path.display());
         };
+        empty.remove(room);
         for name in imports {
             let import = exports.get(&name).unwrap_or(&name);
             num_imports += 1;
+            unused.retain(|pair| *pair != (*room, import.as_str()));
             assert!(
-                *import == module || allowed.contains(&import.as_str()),
+                import == room || allowed.contains(&import.as_str()),
                 "{} imports {import} ({name})",
                 path.display()
             );
         }
     }
-    assert!(num_imports > 40, "only {num_imports} imports found");
+    assert!(num_imports > 200, "only {num_imports} imports found");
+    assert!(unused.is_empty(), "allowed, but imported nowhere: {unused:?}");
+    assert!(empty.is_empty(), "rooms without files: {empty:?}");
 }
 
-/// `super` stays inside the module that the table speaks of.
+/// The page names files and functions: they are there.
 #[test]
-fn no_module_leaves_itself_upwards() {
+fn what_the_page_names_exists() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let is_path = |name: &str| [".rs", ".ts", ".md"].iter().any(|ending| name.ends_with(ending));
+    let sources = sources();
+    let (mut num_paths, mut num_functions) = (0, 0);
+    for name in PAGE.lines().flat_map(|line| line.split('`').skip(1).step_by(2)) {
+        if is_path(name) {
+            let is_source =
+                sources.iter().any(|(_, path, _)| path.ends_with(name.strip_prefix("src/").unwrap_or(name)));
+            let places = ["", "web/src", "web/wasm/src"];
+            let is_elsewhere = places.iter().any(|place| root.join(place).join(name).is_file());
+            assert!(is_source || is_elsewhere, "there is no {name}");
+            num_paths += 1;
+        } else if let Some((owner, function)) = name.split_once("::").filter(|(owner, _)| *owner != "Slot") {
+            // The slot is one of `web/wasm`.
+            let head = format!("fn {function}");
+            let is_there = sources.iter().any(|(_, path, code)| {
+                code.contains(&head) && (code.contains(owner) || path.ends_with(format!("{owner}.rs")))
+            });
+            assert!(is_there, "there is no {name}");
+            num_functions += 1;
+        }
+    }
+    assert!(num_paths > 60 && num_functions > 15, "{num_paths} paths, {num_functions} functions");
+}
+
+/// `super` stays inside the room that the table speaks of.
+#[test]
+fn no_room_is_left_by_super() {
     for (_, path, code) in sources() {
         let depth = path.components().count() - usize::from(path.ends_with("mod.rs"));
         for line in code.lines() {
@@ -230,7 +221,7 @@ const OF_THE_PLATFORM: [&str; 19] = [
 
 /// Modules whose numbers go into no stream.
 const ARE_NO_BYTES: [&str; 8] =
-    ["cli", "decomposition", "experiment", "fuzzing", "io", "main", "metrics", "render"];
+    ["cli", "experiment", "fuzzing", "io", "main", "metrics", "multiresolution", "render"];
 
 #[test]
 fn no_byte_of_a_stream_comes_from_a_function_of_the_platform() {
