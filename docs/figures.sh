@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the pictures in docs/ anew, from models of this repository. Charts of the experiment are not among
-# them: they come from `lwc experiment`, see docs/paper.md.
+# them: they come from `lwc experiment`, see docs/paper.md. Those in docs/rates/ come from benches/compare.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 cargo build --release --bin lwc --example figure_models
@@ -15,6 +15,8 @@ view="--size 480x360"
 lwc encode tests/data/knot.ply -o "$work/knot.lwc"
 lwc render "$work/knot.lwc" -o docs/levels.png --montage --levels 0,2,4,6,8,10,12,15 --columns 4 \
     --size 260x250 --view front --shading flat
+lwc render "$work/knot.lwc" -o docs/strip.png --montage --levels 0,4,8,15 --columns 4 \
+    --size 260x220 --view front --shading flat
 lwc info "$work/knot.lwc" --plot docs/rate.svg
 lwc describe tests/data/knot.ply -d harris3d -o docs/heat.png --clip 1 $view --view front
 
@@ -41,3 +43,6 @@ models bend "$work/coarse.ply" "$work/bent-coarse.ply"
 lwc edit "$work/tube.lwc" "$work/bent-coarse.ply" -o "$work/bent.ply"
 lwc render "$work/bent-coarse.ply" -o docs/edit-coarse.png $view --view top --wireframe --shading flat
 lwc render "$work/bent.ply" -o docs/edit-bent.png $view --view top
+
+# A load beside other codecs, from figures that are there.
+python3 docs/chain.py

@@ -28,7 +28,7 @@ struct Operation {
     run: fn(&TriMesh, &TriMesh),
 }
 
-const OPERATIONS: [Operation; 13] = [
+const OPERATIONS: [Operation; 14] = [
     alone("encode", |mesh, _| encode(mesh, |_| ())),
     alone("encode --partition algorithm1", |mesh, _| encode(mesh, |o| o.partition = Partition::Algorithm1)),
     alone("encode -d nfv", |mesh, _| encode(mesh, |o| o.descriptor = Descriptor::Nfv)),
@@ -43,6 +43,7 @@ const OPERATIONS: [Operation; 13] = [
     alone("compare with itself", |mesh, _| compare_both(mesh, mesh)),
     Operation { name: "compare with its stream", prepare: decoded, run: compare_both },
     Operation { name: "compare with a sphere around it", prepare: sphere_around, run: compare_both },
+    Operation { name: "compare with a tiny one in it", prepare: tiny_in_the_middle, run: compare_both },
     alone("render", |mesh, _| {
         let camera = Camera::fit(mesh, View::default(), Up::Z, 800, 600);
         render(mesh, Paint::Plain, &camera, &Style::default()).expect("a picture");
@@ -78,6 +79,15 @@ fn sphere_around(mesh: &TriMesh) -> TriMesh {
     let place = |p: &[f64; 3]| [0, 1, 2].map(|k| middle[k] + radius * p[k]);
     TriMesh::new(sphere.positions().iter().map(place).collect(), sphere.triangles().to_vec())
         .expect("a valid mesh")
+}
+
+/// About as far from all points of a round mesh.
+fn tiny_in_the_middle(mesh: &TriMesh) -> TriMesh {
+    let (low, high) = mesh.bounding_box().expect("vertices");
+    let size = 1e-3 * (0..3).map(|k| high[k] - low[k]).fold(1e-3, f64::max);
+    let at = |corner: [f64; 3]| [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0 + size * corner[k]);
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(at);
+    TriMesh::new(corners.to_vec(), vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]).expect("a valid mesh")
 }
 
 fn compare_both(a: &TriMesh, b: &TriMesh) {

@@ -176,7 +176,7 @@ mod tests {
         // Three bytes for an instance, one for an image.
         let instances = [&[1, 0, 0xe8, 0x07][..], &[0; 3000]].concat();
         let images = [&[0, 0xe8, 0x07][..], &[0; 1000]].concat();
-        for (max_memory, is_enough) in [(200_000, true), (20_000, false)] {
+        for (max_memory, is_enough) in [(200_000, true), (10_000, false)] {
             let mut budget = Budget::new(0, max_memory);
             assert_eq!(read_within(&instances, &mut budget).is_some(), is_enough);
             assert_eq!(budget.exceeded().is_none(), is_enough);

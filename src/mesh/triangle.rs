@@ -10,7 +10,7 @@ pub(crate) fn squared_distance(p: DVec3, triangle: &[DVec3; 3]) -> f64 {
 
 /// Barycentric coordinates of the point of a triangle that is closest to `p` (Ericson, Real-Time Collision Detection,
 /// 5.1.5).
-#[cfg(feature = "encoder")]
+#[cfg(any(feature = "encoder", feature = "metrics"))]
 pub(crate) fn closest_shares(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> [f64; 3] {
     let (ab, ac) = (b - a, c - a);
     let [pa, pb, pc] = [a, b, c].map(|corner| p - corner);
@@ -45,8 +45,15 @@ pub(crate) fn closest_shares(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> [f64; 3] {
     if sum > 0.0 { [va / sum, vb / sum, vc / sum] } else { [1.0, 0.0, 0.0] }
 }
 
+/// The point of a triangle that is closest to `p`.
+#[cfg(feature = "metrics")]
+pub(crate) fn nearest_point(p: DVec3, triangle: &[DVec3; 3]) -> DVec3 {
+    let shares = closest_shares(p, triangle);
+    (0..3).map(|i| shares[i] * triangle[i]).sum()
+}
+
 /// x / (x + y), 0 where an edge has no length.
-#[cfg(feature = "encoder")]
+#[cfg(any(feature = "encoder", feature = "metrics"))]
 fn share_of(x: f64, y: f64) -> f64 {
     if x + y > 0.0 { x / (x + y) } else { 0.0 }
 }

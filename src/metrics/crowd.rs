@@ -3,11 +3,11 @@
 //!
 //! Of a ball of points only the triangles count that are at most its diameter farther from its centre than the nearest
 //! one. The points are halved, and each half looks at what is left, so that n triangles and m points of a surface
-//! cost about n √m distances.
+//! cost about n √m looks. Most looks are at two planes: a triangle lies in its own, and beyond the one through its point nearest
+//! to any place and across the way there.
 
-use crate::mesh::triangle::squared_distance;
+use crate::mesh::triangle::{nearest_point, squared_distance};
 use glam::DVec3;
-use std::collections::HashSet;
 
 /// A point, and the squared distance that is found.
 #[derive(Clone, Copy)]
@@ -22,28 +22,46 @@ pub(super) struct Waiting {
 const FEW_POINTS: usize = 2;
 const FEW_TRIANGLES: usize = 16;
 
+/// After so many halvings triangles may be seen anew.
+const RENEWED: usize = 3;
+
 /// Fewer points are not worth another thread.
 const MIN_PARALLEL_POINTS: usize = 1024;
 
 /// Distances may be wrong by this share of them, or of the unit of all coordinates.
 const SLACK: f64 = 1e-9;
 
-/// Triangles, each with its plane.
+/// The triangles.
 pub(super) struct Crowd<'a> {
     triangles: &'a [[DVec3; 3]],
-    planes: Vec<Plane>,
-    /// The triangles that differ.
-    all: Vec<u32>,
 }
 
-/// The points where normal · p = offset; the normal is a unit vector, or zero if there is no plane.
-struct Plane {
+/// A triangle, with what shows cheaply that it is far.
+#[derive(Clone, Copy)]
+struct Candidate {
+    triangle: u32,
+    plane: HalfSpace,
+    /// The half-space beyond the point that was nearest to some place.
+    support: HalfSpace,
+}
+
+/// Triangles as they were seen from the middle of a ball of points, so many halvings ago.
+struct Seen {
+    candidates: Vec<Candidate>,
+    radius: f64,
+    depth: usize,
+}
+
+/// The points where normal · p ≤ offset; the normal is a unit vector, or zero if that is everywhere.
+#[derive(Clone, Copy)]
+struct HalfSpace {
     normal: DVec3,
     offset: f64,
 }
 
-impl Plane {
-    fn new([a, b, c]: &[DVec3; 3]) -> Self {
+impl HalfSpace {
+    /// Bounded by the plane of a triangle.
+    fn of([a, b, c]: &[DVec3; 3]) -> Self {
         let cross = (b - a).cross(c - a);
         // The normal of a sliver is noise.
         let is_sliver = cross.length_squared() <= 1e-12 * (b - a).length_squared() * (c - a).length_squared();
@@ -51,83 +69,141 @@ impl Plane {
         Self { normal, offset: normal.dot(*a) }
     }
 
-    fn distance(&self, point: DVec3) -> f64 {
-        (self.normal.dot(point) - self.offset).abs()
+    /// The smallest that holds a triangle and ends across the way from it to a place.
+    fn facing(place: DVec3, triangle: &[DVec3; 3]) -> Self {
+        let normal = (place - nearest_point(place, triangle)).normalize_or_zero();
+        Self { normal, offset: triangle.iter().map(|&p| normal.dot(p)).fold(f64::NEG_INFINITY, f64::max) }
     }
+
+    /// How far outside a point is; negative within.
+    fn height(&self, point: DVec3) -> f64 {
+        self.normal.dot(point) - self.offset
+    }
+}
+
+impl Candidate {
+    /// The distance of a point is at least this.
+    fn least_distance(&self, point: DVec3) -> f64 {
+        self.support.height(point).max(self.plane.height(point).abs())
+    }
+}
+
+/// A distance, made larger by what rounding may have taken.
+fn slackened(distance: f64) -> f64 {
+    distance * (1.0 + SLACK) + SLACK
 }
 
 impl<'a> Crowd<'a> {
     pub fn new(triangles: &'a [[DVec3; 3]]) -> Self {
-        let mut seen = HashSet::new();
-        let all = (0..).zip(triangles).filter(|(_, t)| seen.insert(key(t))).map(|(i, _)| i).collect();
-        Self { triangles, planes: triangles.iter().map(Plane::new).collect(), all }
+        Self { triangles }
     }
 
     /// Finds the distances of `points`, whose order changes. What is below `noise`, squared, need not be the least.
     pub fn find(&self, points: &mut [Waiting], noise: f64) {
-        self.find_among(points, &self.all, noise);
+        let nowhere = HalfSpace { normal: DVec3::ZERO, offset: 0.0 };
+        let candidate =
+            |(triangle, corners)| Candidate { triangle, plane: HalfSpace::of(corners), support: nowhere };
+        let seen = Seen {
+            candidates: (0..).zip(self.triangles).map(candidate).collect(),
+            radius: f64::INFINITY,
+            depth: 0,
+        };
+        let all: Vec<u32> = (0..self.triangles.len() as u32).collect();
+        self.find_among(points, &seen, &all, RENEWED, noise);
     }
 
-    fn find_among(&self, points: &mut [Waiting], triangles: &[u32], noise: f64) {
+    /// `near`: those of the candidates that count.
+    fn find_among(&self, points: &mut [Waiting], seen: &Seen, near: &[u32], depth: usize, noise: f64) {
         let Some((low, high)) = bounds(points) else { return };
         let centre = 0.5 * (low + high);
         let radius = points.iter().map(|p| p.point.distance_squared(centre)).fold(0.0, f64::max).sqrt();
-        let near = self.near(centre, 2.0 * radius, triangles);
+        let (least, near) = self.near(centre, 2.0 * radius, seen, near);
         if points.len() <= FEW_POINTS || near.len() <= FEW_TRIANGLES || radius == 0.0 {
-            points.iter_mut().for_each(|p| p.squared = self.least(p.point, &near, noise));
-            return;
+            points.iter_mut().for_each(|p| p.squared = self.least(p.point, seen, &near, noise));
+        } else if depth >= seen.depth + RENEWED && seen.radius * seen.radius > 0.5 * radius * least {
+            let (seen, near) = self.see_from(centre, radius, depth, seen, &near);
+            self.halve(points, (low, high), |points| self.find_among(points, &seen, &near, depth + 1, noise));
+        } else {
+            self.halve(points, (low, high), |points| self.find_among(points, seen, &near, depth + 1, noise));
         }
+    }
+
+    /// Does the same with each half of some points, whose order changes.
+    fn halve(
+        &self,
+        points: &mut [Waiting],
+        (low, high): (DVec3, DVec3),
+        find: impl Fn(&mut [Waiting]) + Sync,
+    ) {
         let axis = (high - low).max_position();
         let middle = points.len() / 2;
         points.select_nth_unstable_by(middle, |p, q| p.point[axis].total_cmp(&q.point[axis]));
         let is_large = points.len() >= MIN_PARALLEL_POINTS;
         let (left, right) = points.split_at_mut(middle);
-        let mut find_left = || self.find_among(left, &near, noise);
-        let mut find_right = || self.find_among(right, &near, noise);
         if is_large {
-            rayon::join(find_left, find_right);
+            rayon::join(|| find(left), || find(right));
         } else {
-            find_left();
-            find_right();
+            find(left);
+            find(right);
         }
     }
 
-    /// Those of `triangles` that are at most `more` farther from a point than the nearest one.
-    fn near(&self, point: DVec3, more: f64, triangles: &[u32]) -> Vec<u32> {
+    fn squared_distance(&self, point: DVec3, candidate: &Candidate) -> f64 {
+        squared_distance(point, &self.triangles[candidate.triangle as usize])
+    }
+
+    /// The distance of a point, and those that may be at most `more` farther from it.
+    fn near(&self, point: DVec3, more: f64, seen: &Seen, among: &[u32]) -> (f64, Vec<u32>) {
         let mut least = f64::INFINITY;
-        let mut near = Vec::new();
-        for &i in triangles {
-            let bound = (least + more) * (1.0 + SLACK) + SLACK;
-            if self.planes[i as usize].distance(point) <= bound {
-                let distance = squared_distance(point, &self.triangles[i as usize]).sqrt();
-                least = least.min(distance);
-                if distance <= bound {
-                    near.push((distance, i));
-                }
+        let mut near = Vec::with_capacity(among.len());
+        for &i in among {
+            let candidate = &seen.candidates[i as usize];
+            let at_least = candidate.least_distance(point);
+            if at_least < least {
+                least = least.min(self.squared_distance(point, candidate).sqrt());
+            }
+            if at_least <= slackened(least + more) {
+                near.push((at_least, i));
             }
         }
-        let bound = (least + more) * (1.0 + SLACK) + SLACK;
-        near.into_iter().filter(|&(distance, _)| distance <= bound).map(|(_, i)| i).collect()
+        let bound = slackened(least + more);
+        (least, near.into_iter().filter(|&(at_least, _)| at_least <= bound).map(|(_, i)| i).collect())
     }
 
-    fn least(&self, point: DVec3, triangles: &[u32], noise: f64) -> f64 {
+    /// The candidates anew, with the half-spaces that show best what is far from points in a ball.
+    fn see_from(
+        &self,
+        centre: DVec3,
+        radius: f64,
+        depth: usize,
+        seen: &Seen,
+        among: &[u32],
+    ) -> (Seen, Vec<u32>) {
+        let facing = |&i: &u32| {
+            let candidate = seen.candidates[i as usize];
+            let support = HalfSpace::facing(centre, &self.triangles[candidate.triangle as usize]);
+            Candidate { support, ..candidate }
+        };
+        let seen = Seen { candidates: among.iter().map(facing).collect(), radius, depth };
+        let all: Vec<u32> = (0..seen.candidates.len() as u32).collect();
+        let (_, near) = self.near(centre, 2.0 * radius, &seen, &all);
+        (seen, near)
+    }
+
+    fn least(&self, point: DVec3, seen: &Seen, among: &[u32], noise: f64) -> f64 {
         let mut least = f64::INFINITY;
-        for &i in triangles {
-            least = least.min(squared_distance(point, &self.triangles[i as usize]));
-            if least < noise {
-                break;
+        for &i in among {
+            let candidate = &seen.candidates[i as usize];
+            let at_least = candidate.least_distance(point) * (1.0 - SLACK) - SLACK;
+            if at_least < 0.0 || at_least * at_least < least {
+                least = least.min(self.squared_distance(point, candidate));
+                if least < noise {
+                    break;
+                }
             }
         }
         least
     }
-}
-
-/// The same for triangles with the same corners.
-fn key(triangle: &[DVec3; 3]) -> [[u64; 3]; 3] {
-    // Adding 0 makes −0 equal to 0.
-    let mut key = triangle.map(|p| (p + DVec3::ZERO).to_array().map(f64::to_bits));
-    key.sort_unstable();
-    key
 }
 
 fn bounds(points: &[Waiting]) -> Option<(DVec3, DVec3)> {

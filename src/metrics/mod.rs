@@ -11,13 +11,15 @@
 //! size whose sums are added in order.
 
 mod crowd;
+mod known;
 mod nearest;
-mod parts;
+mod oriented;
 mod sample;
 
 use crate::mesh::TriMesh;
 use crowd::{Crowd, Waiting};
 use glam::DVec3;
+use known::Known;
 use nearest::NearestTriangle;
 use rayon::prelude::*;
 use sample::SurfaceSampler;
@@ -31,7 +33,7 @@ const POINTS_AT_ONCE: usize = 1 << 20;
 
 /// Nodes of the tree that may be visited for a point, on the mean of those before it in its block, and some more at
 /// first. Hardly a point of scans and models takes as many.
-const STEPS: usize = 128;
+const STEPS: usize = 512;
 const FIRST_STEPS: usize = 1 << 13;
 
 /// Fewest samples by default, so that small meshes are measured as well as large ones.
@@ -134,7 +136,7 @@ pub fn compare(a: &TriMesh, b: &TriMesh, options: &CompareOptions) -> Result<Com
     let surface_a = Surface::new(a, &frame);
     let surface_b = Surface::new(b, &frame);
     let one_sided = |from: &Surface, to: &Surface| {
-        let samples = options.samples.unwrap_or(MIN_DEFAULT_SAMPLES.max(2 * from.points.len()));
+        let samples = options.samples.unwrap_or(MIN_DEFAULT_SAMPLES.max(2 * from.num_points));
         let Distance { rms, max } = from.distance_to(to, samples);
         Distance { rms: frame.length_to_model(rms), max: frame.length_to_model(max) }
     };
@@ -180,36 +182,49 @@ impl Frame {
 
 /// A mesh prepared for measuring, in the coordinates of a [`Frame`].
 struct Surface {
-    /// The vertices in use.
-    points: Vec<DVec3>,
-    /// Triangles, or one degenerate triangle per point if the mesh has none.
+    places: Vec<DVec3>,
+    /// Vertices of triangles, or the same vertex three times if the mesh has none.
+    corners: Vec<[u32; 3]>,
     triangles: Vec<[DVec3; 3]>,
+    /// Vertices of triangles.
+    num_points: usize,
 }
 
 impl Surface {
     fn new(mesh: &TriMesh, frame: &Frame) -> Self {
         let places: Vec<DVec3> = mesh.positions().iter().map(|&p| frame.to_unit(p)).collect();
-        if mesh.num_triangles() == 0 {
-            let triangles = places.iter().map(|&p| [p; 3]).collect();
-            return Self { points: places, triangles };
+        let corners = match mesh.triangles() {
+            [] => (0..places.len() as u32).map(|v| [v; 3]).collect(),
+            triangles => triangles.to_vec(),
+        };
+        let triangles = corners.iter().map(|t| t.map(|v| places[v as usize])).collect();
+        let surface = Self { places, corners, triangles, num_points: 0 };
+        Self { num_points: surface.points(|_| true).len(), ..surface }
+    }
+
+    /// The vertices of the triangles that `is_meant`.
+    fn points(&self, is_meant: impl Fn(usize) -> bool) -> Vec<DVec3> {
+        let mut is_used = vec![false; self.places.len()];
+        for (_, corners) in self.corners.iter().enumerate().filter(|&(t, _)| is_meant(t)) {
+            corners.iter().for_each(|&v| is_used[v as usize] = true);
         }
-        let mut is_used = vec![false; places.len()];
-        for &v in mesh.triangles().as_flattened() {
-            is_used[v as usize] = true;
-        }
-        let triangles = mesh.triangles().iter().map(|t| t.map(|v| places[v as usize])).collect();
-        let points = places.into_iter().zip(is_used).filter_map(|(p, used)| used.then_some(p)).collect();
-        Self { points, triangles }
+        self.places.iter().zip(is_used).filter_map(|(&p, used)| used.then_some(p)).collect()
     }
 
     fn distance_to(&self, other: &Self, num_samples: usize) -> Distance {
-        let tree = NearestTriangle::new(&other.triangles);
+        let known = Known::new(&other.triangles);
+        let is_common: Vec<bool> = self.triangles.par_iter().map(|t| known.contains(t)).collect();
+        let tree = NearestTriangle::new(&known.distinct());
+        drop(known);
+        let apart = self.points(|t| !is_common[t]);
         let at_vertices =
-            DistanceSum::over(&tree, self.points.len(), |range| self.points[range].iter().copied());
+            DistanceSum::over(&tree, apart.len(), |range| apart[range].iter().copied().map(Some));
         let samples = SurfaceSampler::new(&self.triangles, num_samples.min(u32::MAX as usize));
         let mut sum = match &samples {
-            Some(samples) => DistanceSum::over(&tree, samples.len(), |range| samples.points(range)),
-            None => at_vertices,
+            Some(samples) => DistanceSum::over(&tree, samples.len(), |range| {
+                samples.points(range).map(|(t, point)| (!is_common[t]).then_some(point))
+            }),
+            None => DistanceSum { count: self.num_points, ..at_vertices },
         };
         sum.max_squared = sum.max_squared.max(at_vertices.max_squared);
         let rms = (sum.sum_of_squares / sum.count.max(1) as f64).sqrt();
@@ -226,8 +241,9 @@ struct DistanceSum {
 }
 
 impl DistanceSum {
-    /// Gathers the distances of `count` points, which `points` lists for any range of their indices.
-    fn over<P: Iterator<Item = DVec3>>(
+    /// Gathers the distances of `count` points, which `points` lists for any range of their indices: `None` for those at no
+    /// distance.
+    fn over<P: Iterator<Item = Option<DVec3>>>(
         tree: &NearestTriangle,
         count: usize,
         points: impl Fn(std::ops::Range<usize>) -> P + Sync,
@@ -258,7 +274,7 @@ impl DistanceSum {
 
 /// Squared distances of the points of a range, which `points` lists. Where the tree does not help, all that are left
 /// are found together.
-fn squared_distances<P: Iterator<Item = DVec3>>(
+fn squared_distances<P: Iterator<Item = Option<DVec3>>>(
     tree: &NearestTriangle,
     range: std::ops::Range<usize>,
     points: &(impl Fn(std::ops::Range<usize>) -> P + Sync),
@@ -272,6 +288,7 @@ fn squared_distances<P: Iterator<Item = DVec3>>(
         let mut hint = 0;
         for (i, point) in points(begin..begin + squared.len()).enumerate() {
             steps += if i == 0 { FIRST_STEPS } else { STEPS };
+            let Some(point) = point else { continue };
             // After the first one that takes too long the others are left, too.
             let helps = waiting.is_empty();
             match helps.then(|| tree.nearest(point, hint, NOISE * NOISE, &mut steps)).flatten() {

@@ -2,14 +2,14 @@
 //!
 //! A binary tree of bounding boxes in one flat array, each node followed by its left subtree. The number of
 //! triangles alone gives the shape of the tree, so both halves can be built at once. A search goes into the
-//! nearer box first and leaves out boxes that are farther away than the best triangle so far. Long thin triangles are in
-//! the tree part by part, or their boxes would all overlap.
+//! nearer box first and leaves out boxes that are farther away than the best triangle so far. Where that helps, a box
+//! is turned (`oriented.rs`).
 
-use super::parts::{self, Part};
+use super::oriented::OrientedBox;
 use crate::mesh::triangle::squared_distance;
 use glam::DVec3;
 
-/// Parts in a leaf; only the last leaf has fewer.
+/// Triangles in a leaf; only the last leaf has fewer.
 const LEAF_TRIANGLES: usize = 4;
 
 /// Fewer triangles than this are not worth another thread.
@@ -21,17 +21,16 @@ const MAX_DEPTH: usize = 40;
 /// A search structure over triangles, degenerate ones included.
 pub(super) struct NearestTriangle {
     nodes: Vec<Node>,
-    /// In the order of the leaves, the triangle of each part.
-    parts: Vec<u32>,
-    /// In the order of their first parts.
+    /// In the order of the leaves.
     triangles: Vec<[DVec3; 3]>,
 }
 
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Default)]
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// Parts below: `begin..begin + count`. A leaf has at most [`LEAF_TRIANGLES`].
+    turned: Option<Box<OrientedBox>>,
+    /// Triangles below: `begin..begin + count`. A leaf has at most [`LEAF_TRIANGLES`].
     begin: u32,
     count: u32,
 }
@@ -49,11 +48,10 @@ impl NearestTriangle {
     /// `triangles` must not be empty.
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
         assert!(!triangles.is_empty(), "no triangle to be near to");
-        let mut parts = parts::split(triangles);
-        let mut nodes = vec![Node::default(); num_nodes(parts.len())];
-        build(&mut parts, &mut nodes, 0);
-        let (parts, triangles) = parts::renumbered(&parts, triangles);
-        Self { nodes, parts, triangles }
+        let mut triangles = triangles.to_vec();
+        let mut nodes = vec![Node::default(); num_nodes(triangles.len())];
+        build(&mut triangles, &mut nodes, 0);
+        Self { nodes, triangles }
     }
 
     /// In the order that [`Nearest`] names them by.
@@ -79,11 +77,10 @@ impl NearestTriangle {
             let begin = node.begin as usize;
             let count = node.count as usize;
             if count <= LEAF_TRIANGLES {
-                for &part in &self.parts[begin..begin + count] {
-                    let triangle = part as usize;
-                    let squared = squared_distance(point, &self.triangles[triangle]);
+                for (k, triangle) in self.triangles[begin..begin + count].iter().enumerate() {
+                    let squared = squared_distance(point, triangle);
                     if squared < best.squared {
-                        best = Nearest { squared, triangle };
+                        best = Nearest { squared, triangle: begin + k };
                     }
                 }
                 continue;
@@ -104,7 +101,8 @@ impl NearestTriangle {
 
 impl Node {
     fn squared_distance(&self, point: DVec3) -> f64 {
-        (self.low - point).max(point - self.high).max(DVec3::ZERO).length_squared()
+        let squared = (self.low - point).max(point - self.high).max(DVec3::ZERO).length_squared();
+        self.turned.as_ref().map_or(squared, |turned| squared.max(turned.squared_distance(point)))
     }
 }
 
@@ -118,23 +116,26 @@ fn num_left(count: usize) -> usize {
     count.div_ceil(LEAF_TRIANGLES) / 2 * LEAF_TRIANGLES
 }
 
-/// Sorts `parts`, which begin at `begin` of all, into the leaves of the tree in `nodes`.
-fn build(parts: &mut [Part], nodes: &mut [Node], begin: usize) {
+/// Sorts `triangles`, which begin at `begin` of all, into the leaves of the tree in `nodes`.
+fn build(triangles: &mut [[DVec3; 3]], nodes: &mut [Node], begin: usize) {
     let bounds = |low: DVec3, high: DVec3, p: DVec3| (low.min(p), high.max(p));
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = parts.iter().fold(none, |(low, high), part| (low.min(part.low), high.max(part.high)));
-    let count = parts.len();
-    nodes[0] = Node { low, high, begin: begin as u32, count: count as u32 };
+    let (low, high) = triangles.as_flattened().iter().fold(none, |(low, high), &p| bounds(low, high, p));
+    let count = triangles.len();
+    nodes[0] = Node { low, high, turned: None, begin: begin as u32, count: count as u32 };
     if count <= LEAF_TRIANGLES {
+        nodes[0].turned = OrientedBox::around(triangles, low, high).map(Box::new);
         return;
     }
-    // Twice the centre of a box serves as well as the centre.
-    let centre = |part: &Part| part.low + part.high;
-    let (low, high) = parts.iter().map(centre).fold(none, |(low, high), p| bounds(low, high, p));
-    let axis = (high - low).max_position();
+    // Three times the centre of a triangle serves as well as the centre.
+    let centre = |t: &[DVec3; 3]| t[0] + t[1] + t[2];
+    let (first, last) = triangles.iter().map(centre).fold(none, |(low, high), p| bounds(low, high, p));
+    let axis = (last - first).max_position();
     let num_left = num_left(count);
-    parts.select_nth_unstable_by(num_left, |s, t| centre(s)[axis].total_cmp(&centre(t)[axis]));
-    let (left, right) = parts.split_at_mut(num_left);
+    triangles.select_nth_unstable_by(num_left, |s, t| centre(s)[axis].total_cmp(&centre(t)[axis]));
+    // The one in the middle is now typical of them.
+    nodes[0].turned = OrientedBox::around(triangles, low, high).map(Box::new);
+    let (left, right) = triangles.split_at_mut(num_left);
     let (left_nodes, right_nodes) = nodes[1..].split_at_mut(num_nodes(num_left));
     let mut build_left = || build(left, left_nodes, begin);
     let mut build_right = || build(right, right_nodes, begin + num_left);

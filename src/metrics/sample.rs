@@ -39,8 +39,8 @@ impl<'a> SurfaceSampler<'a> {
         self.num_samples
     }
 
-    /// The samples of a range of indices.
-    pub fn points(&self, range: Range<usize>) -> impl Iterator<Item = DVec3> {
+    /// The samples of a range of indices, each with its triangle.
+    pub fn points(&self, range: Range<usize>) -> impl Iterator<Item = (usize, DVec3)> {
         let total = self.area_up_to.last().copied().unwrap_or_default();
         let area_at = move |sample: usize| (sample as f64 + 0.5) / self.num_samples as f64 * total;
         let first_area = area_at(range.start);
@@ -50,10 +50,11 @@ impl<'a> SurfaceSampler<'a> {
             while triangle + 1 < self.triangles.len() && self.area_up_to[triangle] <= area_at(sample) {
                 triangle += 1;
             }
-            let [a, b, c] = self.triangles[triangle.min(self.triangles.len() - 1)];
+            let at = triangle.min(self.triangles.len() - 1);
+            let [a, b, c] = self.triangles[at];
             let [u, v] = unit_square_point(sample as u64);
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
-            a + u * (b - a) + v * (c - a)
+            (at, a + u * (b - a) + v * (c - a))
         })
     }
 }
@@ -81,11 +82,13 @@ mod tests {
         let (x, y) = (DVec3::X, DVec3::Y);
         let triangles = [[x; 3], [DVec3::ZERO, x, y], [x, x, y], [DVec3::ZERO, 3.0 * x, -y], [y; 3]];
         let sampler = SurfaceSampler::new(&triangles, 1000).unwrap();
-        let points: Vec<DVec3> = sampler.points(0..1000).collect();
+        let points: Vec<DVec3> = sampler.points(0..1000).map(|(_, p)| p).collect();
+        assert!(sampler.points(0..1000).all(|(t, p)| t == if p.y > 0.0 { 1 } else { 3 }));
         assert_eq!(points.iter().filter(|p| p.y > 0.0).count(), 250);
         let is_inside = |p: &DVec3| if p.y > 0.0 { p.x + p.y <= 1.0 } else { p.x / 3.0 - p.y <= 1.0 };
         assert!(points.iter().all(|p| p.z == 0.0 && p.x >= 0.0 && is_inside(p)));
-        let pieces: Vec<DVec3> = (0..1000).step_by(100).flat_map(|k| sampler.points(k..k + 100)).collect();
+        let pieces: Vec<DVec3> =
+            (0..1000).step_by(100).flat_map(|k| sampler.points(k..k + 100)).map(|(_, p)| p).collect();
         assert_eq!(points, pieces);
         assert!(SurfaceSampler::new(&[[x; 3]], 10).is_none());
         assert!(SurfaceSampler::new(&[], 10).is_none());
@@ -95,7 +98,7 @@ mod tests {
     fn samples_integrate_smooth_functions() {
         let triangle = [[DVec3::ZERO, DVec3::X, DVec3::Y]];
         let sampler = SurfaceSampler::new(&triangle, 10_000).unwrap();
-        let mean = sampler.points(0..10_000).map(|p| p.x * p.x).sum::<f64>() / 10_000.0;
+        let mean = sampler.points(0..10_000).map(|(_, p)| p.x * p.x).sum::<f64>() / 10_000.0;
         // The second moment of a triangle: 2 ∫₀¹ x² (1 − x) dx = 1/6.
         assert!((mean - 1.0 / 6.0).abs() < 1e-4, "{mean}");
     }

@@ -45,8 +45,11 @@ mod tests {
         let mut budget = Budget::new(10, 100);
         assert_eq!(budget.take(9, 10), Some(()));
         assert_eq!((budget.taken(), budget.exceeded()), (100, None));
-        assert_eq!(budget.take(usize::MAX, usize::MAX), None);
+        assert_eq!(budget.take(1, 10), None);
         assert_eq!(budget.take(0, 1), None);
+        assert_eq!(budget.exceeded(), Some(110));
+        let mut budget = Budget::new(u64::MAX - 10, u64::MAX - 1);
+        assert_eq!(budget.take(usize::MAX, usize::MAX), None);
         assert_eq!(budget.exceeded(), Some(u64::MAX));
     }
 }
