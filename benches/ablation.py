@@ -23,14 +23,14 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TARGET = ROOT / "target" / "ablation"
 SHARES = [0.05, 0.1, 0.2, 0.5]
 
-GUESS = "src/passes/guess.rs"
-SPECIALISTS = "src/bitstream/specialists.rs"
-PARTITION = "src/partition.rs"
-THINNING = "src/thinning.rs"
+GUESS = "src/passes/coordinate_prediction.rs"
+SPECIALISTS = "src/entropy/specialists.rs"
+PARTITION = "src/simplification/partition.rs"
+THINNING = "src/simplification/vertex_selection.rs"
 # What is switched off: file, words, other words.
 PARTS = {
     "Prediction: true outer vertices, not those of the coarse mesh": [
-        ("src/passes/surroundings.rs", r"if \(tip as usize\) < vertex \{", "if (tip as usize) < vertex && coarse == NO_CORNER {"),
+        ("src/passes/coding_context.rs", r"if \(tip as usize\) < vertex \{", "if (tip as usize) < vertex && coarse == NO_CORNER {"),
     ],
     "Prediction: guesses moved along the tangent plane": [
         (GUESS, r"let slopes = slopes\(normal, axes\);", "let slopes = slopes(Lanes::ZERO, axes);"),
@@ -53,10 +53,10 @@ PARTS = {
     "Densities: experts weighed by how they did": [(GUESS, r"TRUST_RATE: f32 = .*;", "TRUST_RATE: f32 = 0.0;")],
     "Densities: scales learnt on the way": [(GUESS, r"SCALE_RATE: f32 = .*;", "SCALE_RATE: f32 = 0.0;")],
     "Residuals: the density as an input of the mixers": [
-        ("src/bitstream/residual.rs", r"\[tables\.stretch_real\([^\]]*\)\]", "[]"),
+        ("src/entropy/residual.rs", r"\[tables\.stretch_real\([^\]]*\)\]", "[]"),
     ],
     "Mixing: what size adds, by max": [
-        ("src/profile.rs", r"Profile::Max => Mixing::Specialised", "Profile::Max => Mixing::Plain"),
+        ("src/bitstream/profile.rs", r"Profile::Max => Mixing::Specialised", "Profile::Max => Mixing::Plain"),
     ],
     "Mixing: in max, weights of each value of a context": [(SPECIALISTS, r"SHARE: f32 = .*;", "SHARE: f32 = 0.0;")],
     "Mixing: in max, corrections behind": [
@@ -74,7 +74,7 @@ PARTS = {
         (PARTITION, r"order\.into_iter\(\)\.rev\(\)\.partition", "order.into_iter().partition"),
     ],
     "Selection: next to what is removed already": [
-        ("src/simplify/packing.rs", r"const WEIGHT: f64 = 0\.7;", "const WEIGHT: f64 = 0.0;"),
+        ("src/simplification/bucket_queue.rs", r"const WEIGHT: f64 = 0\.7;", "const WEIGHT: f64 = 0.0;"),
     ],
     "Schedule: precision that follows the error": [
         ("src/encoder/schedule.rs", r"let base_precision = if num_levels > 0 .*;", "let base_precision = precision;"),
@@ -84,7 +84,7 @@ PARTS = {
         (THINNING, r"let num_vertices = errors\.len\(\);", "let num_vertices = errors.len(); let mut errors = vec![1.0; num_vertices];"),
     ],
     "Choice: the descriptor": [
-        (THINNING, r"\(2\.0 \* rank - 1\.0\)\.exp2\(\)", "{ let _ = rank; 1.0 }"),
+        (THINNING, r"libm::exp2\(2\.0 \* rank - 1\.0\)", "{ let _ = rank; 1.0 }"),
     ],
     "Choice: creases stay where flat parts can go": [
         (THINNING, r"Some\(OUTLIER\)", "Some(OUTLIER).filter(|_| false)"),

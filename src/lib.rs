@@ -11,13 +11,10 @@ compile_error!(
 mod bitstream;
 mod decoder;
 #[cfg(feature = "encoder")]
-pub mod decomposition;
-#[cfg(feature = "encoder")]
-mod descent;
-#[cfg(feature = "encoder")]
 pub mod descriptors;
 #[cfg(feature = "encoder")]
 mod encoder;
+mod entropy;
 mod error;
 #[cfg(feature = "experiment")]
 pub mod experiment;
@@ -26,32 +23,24 @@ pub mod experiment;
 pub mod fuzzing;
 #[cfg(feature = "io")]
 pub mod io;
-mod lanes;
-#[cfg(feature = "encoder")]
-mod levels;
-mod lifting;
 mod limits;
 pub mod mesh;
 #[cfg(feature = "metrics")]
 pub mod metrics;
 #[cfg(feature = "encoder")]
-mod morton;
-
-mod parallel;
+pub mod multiresolution;
+mod prediction;
 #[cfg(feature = "encoder")]
-mod partition;
+mod simplification;
+mod util;
+
 mod passes;
-mod profile;
 #[cfg(feature = "render")]
 pub mod render;
-mod scene;
-#[cfg(feature = "encoder")]
-mod simplify;
-#[cfg(feature = "encoder")]
-mod thinning;
 
+pub use bitstream::profile::Profile;
 pub use decoder::{
-    AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, Placing, Step, StreamInfo,
+    AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, PositionUpdater, Step, StreamInfo,
     TrailingInfo, TrailingKind, Update, decode,
 };
 #[cfg(feature = "encoder")]
@@ -64,5 +53,6 @@ pub use limits::Limits;
 pub use mesh::repair::RepairReport;
 pub use mesh::{MeshError, TriMesh};
 #[cfg(feature = "encoder")]
-pub use partition::{Optimize, Partition};
-pub use profile::Profile;
+pub use simplification::partition::Partition;
+#[cfg(feature = "encoder")]
+pub use simplification::vertex_selection::Optimize;

@@ -1,6 +1,6 @@
 //! Framing (`format/SPEC.md`, section 3): kind, length, payload, checksum.
 
-use super::bytes::Reader;
+use crate::util::bytes::Reader;
 
 /// First bytes of every stream: a name and the version of the format.
 pub(crate) const SIGNATURE: [u8; 3] = *b"LWC";
@@ -154,7 +154,7 @@ pub(crate) fn write(bytes: &mut Vec<u8>, kind: u8, payload: &[u8]) {
     let start = bytes.len();
     bytes.push(kind);
     if !kind::is_pass(kind) {
-        super::bytes::write_varint(bytes, payload.len() as u32);
+        crate::util::bytes::write_varint(bytes, payload.len() as u32);
     }
     bytes.extend_from_slice(payload);
     let checksum = checksum(&bytes[start..], payload.len());

@@ -1,8 +1,8 @@
 //! How coarse meshes are shown (`format/SPEC.md`, section 4.8).
 
-use super::bits::BitReader;
+use crate::entropy::bits::BitReader;
 #[cfg(any(feature = "encoder", test))]
-use super::bits::BitWriter;
+use crate::entropy::bits::BitWriter;
 
 /// How far vertices are shown off their places, as a mesh shrinks where it is coarse: weights of the bend of a vertex and
 /// of the mean bend of its neighbours, in 1/[`UNIT`](Self::UNIT).

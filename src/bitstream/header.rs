@@ -1,9 +1,9 @@
 //! Payloads of the chunks before the first pass (`format/SPEC.md`, section 4).
 
-use super::bytes::Reader;
-#[cfg(any(feature = "encoder", test))]
-use super::bytes::write_varint;
 use super::chunk::kind;
+use crate::util::bytes::Reader;
+#[cfg(any(feature = "encoder", test))]
+use crate::util::bytes::write_varint;
 
 /// Largest number of bits per coordinate.
 pub(crate) const MAX_PRECISION: u32 = 30;

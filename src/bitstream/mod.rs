@@ -1,17 +1,10 @@
-//! Bytes, chunks, and the entropy coder. Knows no mesh.
+//! What a stream is made of: chunks, headers, the table of passes (`format/SPEC.md`, sections 3 and 4). Of meshes it
+//! knows scenes and materials only.
 
-pub(crate) mod announced;
-pub(crate) mod bits;
-pub(crate) mod budget;
-pub(crate) mod bytes;
 pub(crate) mod chunk;
+pub(crate) mod chunk_index;
 pub(crate) mod compensation;
 pub(crate) mod header;
-pub(crate) mod mixer;
-pub(crate) mod mixture;
 pub(crate) mod pass_table;
-pub(crate) mod range_coder;
-pub(crate) mod residual;
-mod specialists;
-pub(crate) mod streams;
-pub(crate) mod tables;
+pub(crate) mod profile;
+pub(crate) mod scene;

@@ -1,10 +1,10 @@
 //! The table of passes (`format/SPEC.md`, section 4.3): every number as its distance from what the
 //! passes before it let expect.
 
-use super::bits::BitReader;
-#[cfg(any(feature = "encoder", test))]
-use super::bits::BitWriter;
 use super::header::{Action, Grid, MAX_PASSES, MAX_VERTICES_PER_BYTE, Pass};
+use crate::entropy::bits::BitReader;
+#[cfg(any(feature = "encoder", test))]
+use crate::entropy::bits::BitWriter;
 
 /// Why a table of passes is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

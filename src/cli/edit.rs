@@ -7,8 +7,8 @@ use super::output::Destination;
 use super::quantity::counted;
 use super::ui::Ui;
 use anyhow::Context;
-use lwc::decomposition::Edition;
 use lwc::io::{Format, WriteError};
+use lwc::multiresolution::DetailTransfer;
 use std::io::{self, Read, Write};
 use std::path::PathBuf;
 
@@ -54,8 +54,8 @@ pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
     let mut bytes = Vec::new();
     source.open()?.read_to_end(&mut bytes).map_err(Failure::Input).with_context(|| source.name())?;
     let spinner = ui.spinner("editing");
-    let edition =
-        Edition::new(&bytes, changed.num_vertices(), args.limits.limits()).with_context(|| source.name())?;
+    let edition = DetailTransfer::new(&bytes, changed.num_vertices(), args.limits.limits())
+        .with_context(|| source.name())?;
     let level = edition.level();
     let mesh = edition.apply(&changed).with_context(|| args.changed.display().to_string())?;
     drop(spinner);

@@ -1,9 +1,9 @@
 //! How the program ends: one sentence on standard error, and a number.
 
 use super::ui::Ui;
-use lwc::decomposition::EditError;
 use lwc::descriptors::FeaturesError;
 use lwc::io::{ReadError, WriteError};
+use lwc::multiresolution::EditError;
 use lwc::{DecodeError, EncodeError};
 use std::io;
 use std::process::ExitCode;

@@ -10,9 +10,9 @@ use super::ui::Ui;
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lwc::TriMesh;
-use lwc::decomposition::{Decomposition, Options, Prediction, Threshold, denoised};
 use lwc::descriptors::mean_edge_length;
 use lwc::io::{Format, WriteError};
+use lwc::multiresolution::{Decomposition, Options, Prediction, Threshold, denoised};
 use std::io::{self, Write};
 use std::path::PathBuf;
 

@@ -7,18 +7,18 @@ use super::frame::TrailingKind;
 use super::refused::Refused;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::Grid;
-use crate::bitstream::range_coder::RangeDecoder;
+use crate::entropy::range_coder::RangeDecoder;
+use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, has_three_vertices};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, TriMesh, has_three_vertices};
 use crate::passes::attribute::{Declarations, Rows};
 use crate::passes::cost::{self, Counts};
-use crate::passes::glue::{self, GlueModels};
-use crate::passes::loose::{self, Loose};
+use crate::passes::isolated_and_degenerate::{self, Loose};
 use crate::passes::order::{self, Order};
+use crate::passes::stitching::{self, GlueModels};
 use crate::passes::values::{self, Elements, Told};
 use crate::passes::{GridMesh, Malformed, exact};
-use crate::{DecodeError, TriMesh};
 
 /// What the chunks beside the passes tell of the finest mesh, as far as they have come.
 #[derive(Default)]
@@ -296,7 +296,7 @@ impl Extras {
         chunk.check_memory(GLUE_PER_VERTEX * chunk.mesh.positions.len() as u64)?;
         let known = self.roots.len();
         let mut coder = RangeDecoder::new(chunk.payload);
-        let result = glue::code(&mut coder, &mut self.glue, chunk.mesh, &mut self.roots, None);
+        let result = stitching::code(&mut coder, &mut self.glue, chunk.mesh, &mut self.roots, None);
         if result.is_err() {
             self.roots.truncate(known);
         }
@@ -307,13 +307,14 @@ impl Extras {
     fn read_loose(&mut self, chunk: Beside) -> Result<(), Refused> {
         let Beside { payload, mesh, grid, limits, .. } = chunk;
         let mut coder = RangeDecoder::new(payload);
-        let counts = loose::code_counts(&mut coder, payload.len(), None)?;
+        let counts = isolated_and_degenerate::code_counts(&mut coder, payload.len(), None)?;
         let num_joined = self.joined(mesh.positions.len()).first.len();
         Limits::check("vertices", num_joined as u64 + counts[0], u64::from(limits.max_vertices))?;
         let count = counts[0] + counts[1];
         chunk.check_memory(LOOSE_EACH * count)?;
         Limits::check("work", cost::loose(count), chunk.work)?;
-        self.loose = Some(loose::code(&mut coder, grid.precision, num_joined, counts, None)?);
+        self.loose =
+            Some(isolated_and_degenerate::code(&mut coder, grid.precision, num_joined, counts, None)?);
         Ok(())
     }
 

@@ -2,13 +2,13 @@
 
 use super::frame::PassInfo;
 use crate::bitstream::header::Action;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeState};
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeState};
 use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Values};
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
 use crate::passes::attribute::{Brought, Coding, Declaration, Declarations, Desk, Layer, Rows};
 use crate::passes::patch::Patches;
-use crate::passes::work::Work;
+use crate::passes::work_budget::WorkBudget;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
 
 /// What is known of all attributes.
@@ -66,7 +66,7 @@ impl AttributeDecoder {
         &mut self,
         mesh: &GridMesh,
         payload: &[u8],
-        work: &mut Work,
+        work: &mut WorkBudget,
     ) -> Result<bool, Malformed> {
         let mut coder = match self.state.pending.as_ref().and_then(|pending| pending.coder.as_ref()) {
             Some(state) => RangeDecoder::resume(payload, state),
@@ -132,8 +132,9 @@ impl State {
     /// With all values of the pending pass, those guessed that the beginning of a payload does not decide; `None` if
     /// it is nonsense.
     fn guessed(mut self, mesh: &GridMesh, cut: &[u8]) -> Option<Self> {
-        let is_done =
-            self.advance(mesh, &mut RangeDecoder::of_cut(cut), &mut Work::unlimited(), |_, _| {}).ok()?;
+        let is_done = self
+            .advance(mesh, &mut RangeDecoder::of_cut(cut), &mut WorkBudget::unlimited(), |_, _| {})
+            .ok()?;
         is_done.then_some(self)
     }
 
@@ -141,7 +142,7 @@ impl State {
         &mut self,
         mesh: &GridMesh,
         coder: &mut RangeDecoder,
-        work: &mut Work,
+        work: &mut WorkBudget,
         mut finished: impl FnMut(usize, usize),
     ) -> Result<bool, Malformed> {
         let Some(pending) = &mut self.pending else { return Ok(true) };

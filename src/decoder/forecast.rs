@@ -3,7 +3,7 @@
 
 use super::frame::{StreamInfo, TrailingKind};
 use super::head::ASSETS;
-use crate::DecodeError;
+use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::Domain;
 use crate::passes::attribute::Declarations;

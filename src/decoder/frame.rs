@@ -1,14 +1,15 @@
 //! From bytes to chunks: what a stream announces, and where its passes begin.
 
-use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, Frame, NextPass};
+use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::{Action, Grid, Pass, Provenance};
 use crate::bitstream::pass_table::{self, BadTable};
+use crate::bitstream::profile::Profile;
+use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::{Domain, ScalarType, SceneTable, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
-use crate::{DecodeError, Profile};
 
 /// What a stream says of itself before its first pass.
 #[derive(Clone, Debug)]
@@ -447,7 +448,7 @@ pub(super) fn list_passes(
 /// Makes room for announced chunks: the glue of the passes, and what follows the last one.
 pub(super) fn add_announced(
     passes: &mut [PassInfo],
-    announced: &Announced,
+    announced: &ChunkIndex,
 ) -> Result<Vec<TrailingInfo>, BadTable> {
     let mut shift = 0;
     let mut glue = announced.glue.iter().peekable();

@@ -1,17 +1,18 @@
 //! What stands before the passes: header chunks in, [`StreamInfo`] out (`format/SPEC.md`, section 4).
 
-use super::attributes;
-use super::forecast;
 use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, StreamInfo, TrailingInfo};
 use super::refused::{malformed, out_of_order, skip};
-use crate::bitstream::announced::Announced;
-use crate::bitstream::budget::Budget;
+use super::{attributes, forecast};
 use crate::bitstream::chunk::kind;
+use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::header::{Header, Provenance};
+use crate::bitstream::profile::Profile;
+use crate::bitstream::scene;
+use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
-use crate::{DecodeError, Profile, scene};
+use crate::util::budget::Budget;
 
 /// Whether the decoder knows what stands beside the surface. Without that all of it is skipped as chunks that nobody
 /// knows, and the compiler leaves out what would read it.
@@ -24,7 +25,7 @@ pub(super) struct Head {
     provenance: Option<Provenance>,
     /// Payload of its chunk, until the number of passes is known.
     compensation: Option<Vec<u8>>,
-    announced: Option<Announced>,
+    announced: Option<ChunkIndex>,
     scene: Option<SceneTable>,
     pub(super) materials: Option<GltfMaterials>,
     /// Until the decoder of their values takes them.
@@ -69,7 +70,7 @@ impl Head {
             }
             kind::MATERIALS if self.materials.is_none() => self.take_materials(source)?,
             kind::ANNOUNCED if self.announced.is_none() => {
-                let read = |payload: &[u8], _: &mut Budget| Announced::read(payload);
+                let read = |payload: &[u8], _: &mut Budget| ChunkIndex::read(payload);
                 self.announced = Some(self.read(source, "the announced chunks", read)?);
             }
             kind::DECLARATIONS | kind::SCENE | kind::MATERIALS | kind::ANNOUNCED => {

@@ -1,9 +1,9 @@
 //! The mesh a decoder holds, as callers see it.
 
 use super::assemble::Extras;
-use crate::TriMesh;
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::Grid;
+use crate::mesh::TriMesh;
 use crate::passes::compensation::Mover;
 
 /// A borrowed view of the finest complete mesh: valid until the decoder takes more bytes.
@@ -66,7 +66,7 @@ impl<'a> LevelMesh<'a> {
     /// the last pass vertices are shown a little further out, as far as the encoder found to be best, unless
     /// [`DecodeOptions::compensate`](crate::DecodeOptions::compensate) says otherwise.
     pub fn positions(&self) -> Vec<[f64; 3]> {
-        let mut placing = Placing::new(self);
+        let mut placing = PositionUpdater::new(self);
         placing.advance(self, usize::MAX);
         (0..self.num_vertices()).map(|v| placing.position(self, v)).collect()
     }
@@ -109,9 +109,9 @@ impl<'a> LevelMesh<'a> {
 }
 
 /// Positions of a [`LevelMesh`] for callers that have other things to do in time.
-pub struct Placing(Option<Mover>);
+pub struct PositionUpdater(Option<Mover>);
 
-impl Placing {
+impl PositionUpdater {
     /// Of `mesh`, and of no other.
     pub fn new(mesh: &LevelMesh) -> Self {
         Self(mesh.is_compensated().then(|| Mover::new(mesh.num_vertices())))

@@ -13,5 +13,5 @@ mod refused;
 mod running;
 
 pub use frame::{AttributeInfo, PassInfo, PassKind, StreamInfo, TrailingInfo, TrailingKind};
-pub use level_mesh::{LevelMesh, Placing};
+pub use level_mesh::{LevelMesh, PositionUpdater};
 pub use push::{DecodeOptions, Decoder, Step, Update, decode};

@@ -3,17 +3,18 @@
 use super::frame::{PassInfo, PassKind};
 use super::running::Running;
 use crate::bitstream::header::Action;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::RangeDecoder;
+use crate::bitstream::profile::Profile;
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::RangeDecoder;
+use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::Surface;
 use crate::passes::connectivity::ConnectivityModels;
 use crate::passes::coordinates::CoordinateModels;
 use crate::passes::patch::{Patches, StarBuilder};
 use crate::passes::refine::RefineModels;
-use crate::passes::work::Work;
+use crate::passes::work_budget::WorkBudget;
 use crate::passes::{GridMesh, Malformed};
-use crate::{DecodeError, Profile};
 
 /// The mesh and all that is learnt about it.
 #[derive(Clone)]
@@ -100,7 +101,7 @@ impl PassDecoder {
         running: &mut Running,
         pass: &PassInfo,
         payload: &[u8],
-        work: &mut Work,
+        work: &mut WorkBudget,
     ) -> Result<Option<(Changes, Patches)>, Malformed> {
         let result = running.advance(self, pass, payload, work).map(|patches| {
             let patches = patches?;
@@ -135,7 +136,8 @@ impl PassDecoder {
         let mut coder = RangeDecoder::of_cut(payload);
         let mut ahead = self.clone();
         let mut running = Running::new(payload, pass, self.profile)?;
-        let patches = running.advance_with(&mut ahead, pass, &mut coder, &mut Work::unlimited()).ok()??;
+        let patches =
+            running.advance_with(&mut ahead, pass, &mut coder, &mut WorkBudget::unlimited()).ok()??;
         if pass.kind == PassKind::Refine {
             return Some((ahead.mesh, patches));
         }

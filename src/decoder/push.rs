@@ -2,22 +2,22 @@
 
 use super::assemble::{Beside, Extras};
 use super::attributes::{self, AttributeDecoder};
-use super::environment;
-use super::forecast;
 use super::frame::{Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
 use super::head::{ASSETS, Head, Source};
 use super::level_mesh::LevelMesh;
 use super::passes::PassDecoder;
 use super::refused::{malformed, out_of_order, skip};
 use super::running::Running;
+use super::{environment, forecast};
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::compensation::Compensation;
+use crate::bitstream::profile::Profile;
+use crate::error::DecodeError;
 use crate::limits::Limits;
-use crate::mesh::Attributes;
+use crate::mesh::{Attributes, TriMesh};
 use crate::passes::GridMesh;
 use crate::passes::patch::Patches;
-use crate::passes::work::Work;
-use crate::{DecodeError, Profile, TriMesh};
+use crate::passes::work_budget::WorkBudget;
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -156,7 +156,7 @@ impl Decoder {
     /// # Errors
     /// As [`Decoder::push`].
     pub fn step(&mut self) -> Result<Option<Update>, DecodeError> {
-        match self.step_with(&mut Work::unlimited())? {
+        match self.step_with(&mut WorkBudget::unlimited())? {
             Step::Finished(update) => Ok(Some(update)),
             Step::Unfinished | Step::Waiting => Ok(None),
         }
@@ -186,10 +186,10 @@ impl Decoder {
     /// # Errors
     /// As [`Decoder::push`].
     pub fn step_within(&mut self, work: u32) -> Result<Step, DecodeError> {
-        self.step_with(&mut Work::units(work.max(1)))
+        self.step_with(&mut WorkBudget::units(work.max(1)))
     }
 
-    fn step_with(&mut self, work: &mut Work) -> Result<Step, DecodeError> {
+    fn step_with(&mut self, work: &mut WorkBudget) -> Result<Step, DecodeError> {
         if self.failed {
             return Err(DecodeError::Failed);
         }
@@ -197,7 +197,7 @@ impl Decoder {
     }
 
     /// Goes on in slices that the work limit allows: each byte that is read earns more of it.
-    fn step_within_limits(&mut self, work: &mut Work) -> Result<Step, DecodeError> {
+    fn step_within_limits(&mut self, work: &mut WorkBudget) -> Result<Step, DecodeError> {
         environment::check().map_err(DecodeError::FloatingPoint)?;
         loop {
             let mut slice = work.at_most(self.work_left());
@@ -217,7 +217,7 @@ impl Decoder {
         forecast::allowed(&self.limits, self.frames.position()).saturating_sub(self.work_done)
     }
 
-    fn try_step(&mut self, work: &mut Work) -> Result<Step, DecodeError> {
+    fn try_step(&mut self, work: &mut WorkBudget) -> Result<Step, DecodeError> {
         if let Some((running, chunk)) = self.running.take() {
             return self.advance(running, chunk, work);
         }
@@ -276,7 +276,7 @@ impl Decoder {
         self.frames.memory() + self.head.memory() + extras
     }
 
-    fn begin(&mut self, chunk: Chunk, work: &mut Work) -> Result<Step, DecodeError> {
+    fn begin(&mut self, chunk: Chunk, work: &mut WorkBudget) -> Result<Step, DecodeError> {
         let pass = self.next_pass().ok_or(malformed("a pass that was not announced", &chunk))?;
         let held = self.memory_besides() + self.memory_of_attributes(pass);
         self.passes.check_limits(pass, &self.limits, held)?;
@@ -291,7 +291,12 @@ impl Decoder {
     }
 
     /// Goes on with the next pass.
-    fn advance(&mut self, mut running: Running, chunk: Chunk, work: &mut Work) -> Result<Step, DecodeError> {
+    fn advance(
+        &mut self,
+        mut running: Running,
+        chunk: Chunk,
+        work: &mut WorkBudget,
+    ) -> Result<Step, DecodeError> {
         let pass = self.next_pass().copied().ok_or(malformed("a pass that was not announced", &chunk))?;
         let payload = self.frames.payload(&chunk);
         let changes = self.passes.advance(&mut running, &pass, payload, work);
@@ -333,7 +338,7 @@ impl Decoder {
     }
 
     /// Takes a chunk that was awaited; false if it is half done.
-    fn begin_companion(&mut self, chunk: Chunk, work: &mut Work) -> Result<bool, DecodeError> {
+    fn begin_companion(&mut self, chunk: Chunk, work: &mut WorkBudget) -> Result<bool, DecodeError> {
         if !ASSETS {
             return Err(out_of_order(&chunk));
         }
@@ -353,7 +358,7 @@ impl Decoder {
     }
 
     /// Goes on with the values of the last pass; false if the work is used up before they are all there.
-    fn advance_attributes(&mut self, chunk: Chunk, work: &mut Work) -> Result<bool, DecodeError> {
+    fn advance_attributes(&mut self, chunk: Chunk, work: &mut WorkBudget) -> Result<bool, DecodeError> {
         let Some(attributes) = &mut self.attributes else { return Err(out_of_order(&chunk)) };
         let payload = self.frames.payload(&chunk);
         let is_done = attributes.advance(&self.passes.mesh, payload, work);
@@ -367,7 +372,7 @@ impl Decoder {
     }
 
     /// Takes glue, or a chunk that follows the last pass.
-    fn read_extra(&mut self, chunk: &Chunk, work: &mut Work) -> Result<(), DecodeError> {
+    fn read_extra(&mut self, chunk: &Chunk, work: &mut WorkBudget) -> Result<(), DecodeError> {
         let (Some(info), Some(pass)) = (&self.info, self.last_pass()) else {
             return Err(out_of_order(chunk));
         };

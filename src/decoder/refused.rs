@@ -1,8 +1,8 @@
 //! Why a chunk is refused.
 
 use super::frame::{self, Chunk};
-use crate::DecodeError;
 use crate::bitstream::chunk::kind;
+use crate::error::DecodeError;
 use crate::passes::Malformed;
 
 /// What is wrong with a payload, for the first byte of its chunk to be added.

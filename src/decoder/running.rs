@@ -2,18 +2,18 @@
 
 use super::frame::{PassInfo, PassKind};
 use super::passes::{Models, PassDecoder};
-use crate::Profile;
 use crate::bitstream::header::Action;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeState};
-use crate::bitstream::streams::StreamReader;
+use crate::bitstream::profile::Profile;
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeState};
+use crate::entropy::streams::StreamReader;
 use crate::passes::base::Grower;
+use crate::passes::base_positions::Placement;
 use crate::passes::connectivity::PausedWalk;
+use crate::passes::coordinates_fast::Located;
 use crate::passes::patch::{Patches, StarBuilder};
-use crate::passes::placement::Placement;
-use crate::passes::plain::Located;
-use crate::passes::work::{SWEPT_PER_UNIT, Work};
-use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, plain, refine};
+use crate::passes::work_budget::{SWEPT_PER_UNIT, WorkBudget};
+use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, coordinates_fast, refine};
 
 /// Whether the decoder reads the profile *fast*. Without it the compiler leaves out what would.
 const STREAMS: bool = Profile::Fast.is_supported();
@@ -82,7 +82,7 @@ impl Running {
         decoder: &mut PassDecoder,
         pass: &PassInfo,
         payload: &[u8],
-        work: &mut Work,
+        work: &mut WorkBudget,
     ) -> Result<Option<Patches>, Malformed> {
         match std::mem::replace(&mut self.coder, Coder::AtWork) {
             Coder::Range(state) => {
@@ -116,7 +116,7 @@ impl Running {
         decoder: &mut PassDecoder,
         pass: &PassInfo,
         coder: &mut B,
-        work: &mut Work,
+        work: &mut WorkBudget,
     ) -> Result<Option<Patches>, Malformed> {
         let PassDecoder { mesh, models, profile } = decoder;
         let mixing = profile.mixing();
@@ -179,7 +179,9 @@ impl Running {
                             let GridMesh { positions, roughness, .. } = &mut *mesh;
                             let mut known = Located { positions, roughness };
                             let limit = 1 << pass.precision;
-                            plain::code_vertex(coder, &mut known, &patches, next, star, limit, [0; 3])?;
+                            coordinates_fast::code_vertex(
+                                coder, &mut known, &patches, next, star, limit, [0; 3],
+                            )?;
                         }
                         next += 1;
                     }
@@ -216,7 +218,7 @@ impl Running {
                 }
                 Stage::Refine(mut next) => {
                     let is_over = if B::HAS_STREAMS {
-                        plain::refine_some(coder, &mut mesh.positions, &mut next, None, work)
+                        coordinates_fast::refine_some(coder, &mut mesh.positions, &mut next, None, work)
                     } else {
                         refine::code_some(coder, &mut models.refine, mesh, &mut next, None, work)
                     };
@@ -231,7 +233,13 @@ impl Running {
         Ok(None)
     }
 
-    fn begin(&mut self, mesh: &mut GridMesh, pass: &PassInfo, mixing: Mixing, work: &mut Work) -> Stage {
+    fn begin(
+        &mut self,
+        mesh: &mut GridMesh,
+        pass: &PassInfo,
+        mixing: Mixing,
+        work: &mut WorkBudget,
+    ) -> Stage {
         match (pass.kind, pass.row.action) {
             (_, Action::Base { precision }) => {
                 let (vertices, faces) = (pass.vertices as usize, pass.faces as usize);
@@ -262,7 +270,7 @@ fn at_end<T>(result: Result<Option<T>, Malformed>, coder: &impl BitCoder) -> Res
 }
 
 /// Goes on copying `from` behind the end of `to`; true once all is there.
-fn copy_some<T: Copy>(from: &[T], to: &mut Vec<T>, work: &mut Work, change: impl Fn(T) -> T) -> bool {
+fn copy_some<T: Copy>(from: &[T], to: &mut Vec<T>, work: &mut WorkBudget, change: impl Fn(T) -> T) -> bool {
     while to.len() < from.len() && work.take(1) {
         let end = from.len().min(to.len() + SWEPT_PER_UNIT);
         to.extend(from[to.len()..end].iter().map(|&x| change(x)));

@@ -1,6 +1,6 @@
 //! An order of vertices in which neighbours in space are near each other in memory.
 
-use crate::morton::morton;
+use crate::util::morton::morton;
 use glam::DVec3;
 use rayon::prelude::*;
 

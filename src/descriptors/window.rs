@@ -245,7 +245,7 @@ impl<'a> LocalWindow<'a> {
 mod tests {
     use super::super::readings::NormalWeights;
     use super::*;
-    use crate::TriMesh;
+    use crate::mesh::TriMesh;
 
     /// Vertices of the window of each vertex, which the radius does not limit.
     fn sizes(num_vertices: u32, triangles: Vec<[u32; 3]>, rings: u32) -> Vec<usize> {

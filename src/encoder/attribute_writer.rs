@@ -1,18 +1,18 @@
 //! The values of attributes behind each pass.
 
-use super::analysis::Hierarchy;
 use super::attributes::Quantised;
+use super::coarsen::Hierarchy;
 use super::padded;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::RangeEncoder;
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::{Domain, NO_ROW};
 use crate::passes::GridMesh;
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
 use crate::passes::attribute::{Brought, Desk, Layer, Rows, Truth};
 use crate::passes::patch::{Patches, Star};
-use crate::passes::work::Work;
-use crate::simplify::LevelRecord;
-use crate::simplify::record::Removed;
+use crate::passes::work_budget::WorkBudget;
+use crate::simplification::LevelRecord;
+use crate::simplification::record::Removed;
 
 /// The decoder's layers, and what they should become.
 pub(super) struct AttributeWriter<'a> {
@@ -115,7 +115,7 @@ impl<'a> AttributeWriter<'a> {
                 truth.extend(missing.map(|&v| attribute.of[v as usize]));
             }
             let truth = Truth { of: truth, rows: &attribute.rows };
-            let work = &mut Work::unlimited();
+            let work = &mut WorkBudget::unlimited();
             let done = layer.code_some(&mut coder, brought, &mut 0, Some(truth), work, &mut desk);
             debug_assert_eq!(done, Ok(true));
             num_channels += attribute.declaration.num_channels() as u64;

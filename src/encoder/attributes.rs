@@ -1,14 +1,15 @@
 //! From attributes to integers: how each is declared, and the rows of its elements.
 
 use super::options::EncodeOptions;
-use crate::bitstream::budget::Budget;
+use crate::bitstream::scene;
+use crate::error::EncodeError;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, TriMesh, Values};
 use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};
-use crate::simplify::Seams;
-use crate::{EncodeError, TriMesh, scene};
+use crate::simplification::Seams;
+use crate::util::budget::Budget;
 use std::collections::HashMap;
 use std::sync::Arc;
 

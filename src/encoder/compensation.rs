@@ -7,7 +7,7 @@ use crate::mesh::surface::{NO_CORNER, next, turns};
 use crate::mesh::triangle::closest_shares;
 use crate::passes::GridMesh;
 use crate::passes::compensation::{Bend, bend};
-use crate::simplify::LevelRecord;
+use crate::simplification::LevelRecord;
 use bitvec::vec::BitVec;
 use glam::DVec3;
 use rustc_hash::FxHashMap;

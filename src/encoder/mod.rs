@@ -1,35 +1,35 @@
 //! From a mesh to a stream: down the levels first, then coarse to fine into the bytes.
 
-mod analysis;
 mod attribute_writer;
 mod attributes;
+mod canonical_order;
+mod coarsen;
 mod compensation;
 mod earnings;
+mod number_format;
 mod options;
-mod order;
+mod patch_search;
 pub(crate) mod quantise;
-mod scale;
 mod schedule;
-mod scout;
-mod signatures;
+mod tie_break;
 mod ties;
 mod trailing;
 mod values;
 mod write;
 
 use attributes::Elements;
-use signatures::Signatures;
+use tie_break::Signatures;
 use trailing::Exact;
 use values::ExactValues;
 
 pub use options::{EncodeOptions, Encoded, Progress};
 
-use crate::decoder::environment;
+use crate::decoder::{StreamInfo, environment};
 use crate::descriptors::{Features, FeaturesError};
+use crate::error::EncodeError;
 use crate::mesh::repair::{RepairReport, cut};
-use crate::mesh::{Attributes, has_three_vertices};
+use crate::mesh::{Attributes, TriMesh, has_three_vertices};
 use crate::passes::Malformed;
-use crate::{EncodeError, StreamInfo, TriMesh};
 use std::cell::OnceCell;
 
 /// Encodes a mesh.
@@ -94,7 +94,7 @@ pub fn encode_with_attributes(
         )
     };
     let signatures = || once.get_or_init(make_signatures).as_ref();
-    let (ordered, triangles) = order::order(mesh, &grid, &signatures);
+    let (ordered, triangles) = canonical_order::order(mesh, &grid, &signatures);
     if !loose.is_empty() || !loose_corners.is_empty() {
         let signatures: Option<&Signatures> = signatures();
         trailing::sort_loose(&mut loose, mesh, &grid, signatures);
@@ -130,8 +130,8 @@ pub fn encode_with_attributes(
         let is_last = i + 1 == attempts.len();
         let taken = if is_last { surface.take() } else { surface.clone() }.unwrap_or_default();
         let (glued, seams, features) = (glued.clone(), quantised.seams(), features.clone());
-        let companions = analysis::Companions { glued, seams, features };
-        let hierarchy = analysis::analyse(taken, &cells, companions, options, attempt, progress);
+        let companions = coarsen::Companions { glued, seams, features };
+        let hierarchy = coarsen::analyse(taken, &cells, companions, options, attempt, progress);
         let is_one_schedule = options.steps_per_edge.is_some() || hierarchy.records.is_empty();
         let tried = if is_one_schedule { &[None] } else { options.steps_tried() };
         for &steps in tried {

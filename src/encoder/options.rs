@@ -1,9 +1,13 @@
 //! What the caller may choose, and what comes back.
 
-use crate::descent::MAX_LEVELS;
+use crate::bitstream::profile::Profile;
+use crate::decoder::StreamInfo;
 use crate::descriptors::{Descriptor, FeatureChoice, Window};
+use crate::error::EncodeError;
 use crate::mesh::repair::RepairReport;
-use crate::{EncodeError, Optimize, Partition, Profile, StreamInfo};
+use crate::simplification::hierarchy::MAX_LEVELS;
+use crate::simplification::partition::Partition;
+use crate::simplification::vertex_selection::Optimize;
 
 /// How to encode. `Default` gives the defaults named below.
 #[derive(Clone, Debug, PartialEq)]

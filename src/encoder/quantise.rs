@@ -1,8 +1,9 @@
-//! The grid of the codec (`NOTES`, "Grid": per-axis minimum, the longest side divided into 2^q − 1
-//! steps, halves rounded up).
+//! The grid of the codec (`format/SPEC.md`, section 4.1): per-axis minimum, the longest side divided into 2^q − 1
+//! steps, halves rounded up.
 
 use crate::bitstream::header::Grid;
-use crate::{EncodeError, TriMesh};
+use crate::error::EncodeError;
+use crate::mesh::TriMesh;
 
 /// Bits of a grid that is finer than float32, on which the sides of faces are compared where no stream sets
 /// a grid.

@@ -1,6 +1,6 @@
 //! Which pass comes when, and with how many bits.
 
-use super::analysis::Hierarchy;
+use super::coarsen::Hierarchy;
 
 /// One pass of the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@
 //! 1981): a vertex is marked, and only where a class of equal vertices comes apart the neighbours are looked at
 //! again. So equal pieces cost what they have of faces, however many lie at one place.
 
-use super::signatures::mix;
+use super::tie_break::mix;
 use crate::mesh::CornersAt;
 
 /// Rounds in which all vertices look at their neighbours, before it is seen whether that tells more apart;

@@ -1,27 +1,24 @@
 //! What follows the last pass: everything of the mesh that the surface on the grid does not tell.
 
-use super::attributes;
+use super::canonical_order::Ordered;
+use super::number_format::cheapest_scale;
 use super::options::EncodeOptions;
-use super::order::Ordered;
-use super::scale::cheapest_scale;
-use super::signatures::Signatures;
+use super::tie_break::Signatures;
 use super::values::ExactValues;
-use super::{expect_sound, padded};
-use crate::TriMesh;
+use super::{attributes, expect_sound, padded};
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::{Grid, MAX_VERTICES_PER_BYTE};
-use crate::bitstream::range_coder::RangeEncoder;
 use crate::decoder::assemble::Extras;
-use crate::mesh::has_three_vertices;
+use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::surface::turns;
-use crate::morton::morton;
-use crate::passes::GridMesh;
+use crate::mesh::{TriMesh, has_three_vertices};
 use crate::passes::attribute::Rows;
-use crate::passes::exact;
-use crate::passes::ladder::Ladder;
-use crate::passes::loose::{self, Loose};
+use crate::passes::float_values::Ladder;
+use crate::passes::isolated_and_degenerate::{self, Loose};
 use crate::passes::order::{self, Order};
 use crate::passes::values::Elements;
+use crate::passes::{GridMesh, exact};
+use crate::util::morton::morton;
 use bitvec::vec::BitVec;
 
 /// Glued vertices are never removed unless they are a larger share of all: the base would be too large.
@@ -195,8 +192,14 @@ impl Exact<'_> {
 
     fn write_loose(&self, loose: &Loose, num_joined: usize) -> Vec<u8> {
         let mut coder = RangeEncoder::new();
-        let counts = expect_sound(loose::code_counts(&mut coder, 0, Some(loose)));
-        expect_sound(loose::code(&mut coder, self.grid.precision, num_joined, counts, Some(loose)));
+        let counts = expect_sound(isolated_and_degenerate::code_counts(&mut coder, 0, Some(loose)));
+        expect_sound(isolated_and_degenerate::code(
+            &mut coder,
+            self.grid.precision,
+            num_joined,
+            counts,
+            Some(loose),
+        ));
         padded(coder.finish(), counts[0] + counts[1], u64::from(MAX_VERTICES_PER_BYTE))
     }
 

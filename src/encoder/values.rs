@@ -2,11 +2,11 @@
 
 use super::attributes::{Quantised, QuantisedAttribute};
 use super::expect_sound;
-use super::scale::cheapest_scale;
-use crate::bitstream::range_coder::RangeEncoder;
+use super::number_format::cheapest_scale;
+use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::{Attribute, Attributes, NO_ROW, Values};
 use crate::passes::attribute::Declaration;
-use crate::passes::ladder::{Ladder, Scale};
+use crate::passes::float_values::{Ladder, Scale};
 use crate::passes::values::{self, Elements, Ladders, Truth};
 use bitvec::vec::BitVec;
 

@@ -1,32 +1,31 @@
 //! Up the levels: the decoder's own steps, with the truth at hand.
 
-use super::analysis::{ANALYSIS_SHARE, Hierarchy};
 use super::attribute_writer::AttributeWriter;
 use super::attributes::Quantised;
+use super::coarsen::{ANALYSIS_SHARE, Hierarchy};
 use super::compensation::{Fitter, Point};
-use super::earnings;
 use super::options::Progress;
+use super::patch_search::{Found, Names, PatchSearch};
 use super::schedule::{Schedule, Step};
-use super::scout::{Found, Names, Scout};
 use super::trailing::{Exact, Written};
-use super::{expect_sound, padded};
-use crate::Profile;
-use crate::bitstream::announced::Announced;
+use super::{earnings, expect_sound, padded};
 use crate::bitstream::chunk::{self, kind};
+use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::{Action, Header, MAX_VERTICES_PER_BYTE, Pass, Provenance};
 use crate::bitstream::pass_table;
-use crate::bitstream::range_coder::RangeEncoder;
-use crate::bitstream::streams::StreamWriter;
+use crate::bitstream::profile::Profile;
+use crate::entropy::range_coder::RangeEncoder;
+use crate::entropy::streams::StreamWriter;
 use crate::passes::GridMesh;
 use crate::passes::base::{self, BaseTarget};
 use crate::passes::coordinates::{self, CoordinateModels};
-use crate::passes::glue::{self, GlueModels};
+use crate::passes::coordinates_fast::{self, Located};
 use crate::passes::patch::{Patches, Star, StarBuilder};
-use crate::passes::plain::{self, Located};
 use crate::passes::refine::{self, RefineModels};
-use crate::passes::work::Work;
-use crate::simplify::LevelRecord;
+use crate::passes::stitching::{self, GlueModels};
+use crate::passes::work_budget::WorkBudget;
+use crate::simplification::LevelRecord;
 use bitvec::vec::BitVec;
 
 /// Materials of at most this many bytes stand in front of the passes: the base mesh should not have to wait for
@@ -45,7 +44,7 @@ pub(super) fn write(
 ) -> Vec<u8> {
     let (mut writer, mut names) =
         PassWriter::new(hierarchy, cells, attributes, exact, points, schedule.base_precision);
-    let mut scout = Scout::new(hierarchy.num_faces, writer.profile.mixing());
+    let mut scout = PatchSearch::new(hierarchy.num_faces, writer.profile.mixing());
     let is_split = |step: &&Step| matches!(step, Step::Split(_));
     let num_first = schedule.steps.iter().take_while(|step| !is_split(step)).count();
     let (first, rest) = schedule.steps.split_at(num_first);
@@ -135,7 +134,7 @@ fn assemble(
         chunk::write(&mut bytes, kind::MATERIALS, materials);
     }
     let glue = passes.iter().zip(0..).filter_map(|(pass, i)| Some((i, pass.glue.as_ref()?.len() as u32)));
-    let announced = Announced {
+    let announced = ChunkIndex {
         glue: glue.collect(),
         trailing: trailing.iter().map(|(kind, payload)| (*kind, payload.len() as u32)).collect(),
     };
@@ -287,7 +286,7 @@ impl<'a> PassWriter<'a> {
         }
         let names: Vec<u32> = vertex_source.iter().map(|&v| self.source[v as usize]).collect();
         let mut coder = RangeEncoder::new();
-        expect_sound(glue::code(&mut coder, &mut self.glue, &self.mesh, &mut self.roots, Some(&names)));
+        expect_sound(stitching::code(&mut coder, &mut self.glue, &self.mesh, &mut self.roots, Some(&names)));
         Some(coder.finish())
     }
 
@@ -306,7 +305,13 @@ impl<'a> PassWriter<'a> {
                 let mut coder = StreamWriter::new(0);
                 let positions = &mut self.mesh.positions;
                 positions.iter_mut().flatten().for_each(|c| *c *= 2);
-                plain::refine_some(&mut coder, positions, &mut 0, Some(&target), &mut Work::unlimited());
+                coordinates_fast::refine_some(
+                    &mut coder,
+                    positions,
+                    &mut 0,
+                    Some(&target),
+                    &mut WorkBudget::unlimited(),
+                );
                 coder.finish()
             }
         };
@@ -325,14 +330,16 @@ impl<'a> PassWriter<'a> {
         self.finish_split(&patches, coder.finish(), names);
     }
 
-    fn split_in_streams(&mut self, record: &LevelRecord, names: &mut Names, scout: &mut Scout) {
+    fn split_in_streams(&mut self, record: &LevelRecord, names: &mut Names, scout: &mut PatchSearch) {
         let mut coder = StreamWriter::new(record.len() as u32);
         let (patches, odd) = scout.find_with(&mut coder, &self.mesh, names, record);
         let (wanted, limit) = (self.wanted(record, &odd), 1 << self.precision);
         self.restore(record, &patches, &odd, names, |mesh, patches, j, star| {
             let GridMesh { positions, roughness, .. } = mesh;
             let mut known = Located { positions, roughness };
-            expect_sound(plain::code_vertex(&mut coder, &mut known, patches, j, star, limit, wanted[j]));
+            expect_sound(coordinates_fast::code_vertex(
+                &mut coder, &mut known, patches, j, star, limit, wanted[j],
+            ));
         });
         self.finish_split(&patches, coder.finish(), names);
     }
@@ -383,7 +390,7 @@ impl<'a> PassWriter<'a> {
 /// one is.
 fn name_faces(
     star: &Star,
-    removed: &crate::simplify::record::Removed,
+    removed: &crate::simplification::record::Removed,
     vertex_source: &[u32],
     face_source: &mut [u32],
 ) -> usize {

@@ -16,21 +16,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod apd;
+mod average_plane_distance;
 mod noise;
 
 pub use noise::Noise;
 
 use crate::descriptors::{self, Descriptor, Readings, Window};
 use crate::encoder::quantise::{LEGALITY_BITS, quantise};
-use crate::levels::Level;
-use crate::mesh::Surface;
+use crate::error::EncodeError;
 use crate::mesh::repair::{RepairReport, Repaired, repair};
-use crate::partition::{Geometry, by_score, remove_in_order};
-use crate::simplify::Seams;
-use crate::simplify::ShrinkingSurface;
-use crate::{EncodeError, TriMesh};
-use apd::average_plane_distance;
+use crate::mesh::{Surface, TriMesh};
+use crate::simplification::level::Level;
+use crate::simplification::partition::{Geometry, by_score, remove_in_order};
+use crate::simplification::{Seams, SurfaceEditor};
+use average_plane_distance::average_plane_distance;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -168,7 +167,7 @@ impl Experiment {
         };
         let mut window = settings.window;
         window.radius *= self.mean_edge / unit_length;
-        let mut shrinking = ShrinkingSurface::new(self.surface.clone());
+        let mut shrinking = SurfaceEditor::new(self.surface.clone());
         let mut steps = Vec::new();
         let (mut done, total) = (0.0, expected_work(self.num_vertices(), settings.levels));
         for step in 1..=settings.levels {

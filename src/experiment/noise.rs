@@ -1,6 +1,7 @@
 //! Artificial noise (section 6 of the paper).
 
-use crate::{EncodeError, TriMesh};
+use crate::error::EncodeError;
+use crate::mesh::TriMesh;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};

@@ -1,11 +1,11 @@
 //! Streams taken apart into chunks, changed, and put together so that what a reader checks first is right.
 
-use crate::bitstream::announced::Announced;
-use crate::bitstream::budget::Budget;
 use crate::bitstream::chunk::{self, Frame, kind};
+use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::header::{Header, Pass};
 use crate::bitstream::pass_table;
 use crate::passes::attribute::Declarations;
+use crate::util::budget::Budget;
 
 /// A chunk; of a pass with its row of the table.
 #[derive(Clone)]
@@ -97,8 +97,8 @@ impl Stream {
     }
 
     /// Glue and trailing chunks as they stand.
-    fn announced(&self) -> Announced {
-        let mut announced = Announced::default();
+    fn announced(&self) -> ChunkIndex {
+        let mut announced = ChunkIndex::default();
         let mut num_passes = 0;
         for Chunk { kind, payload, .. } in &self.chunks {
             let bytes = payload.len() as u32;
@@ -155,7 +155,7 @@ impl Stream {
 
 /// The announced chunks with the sizes of those that are there; `None` if they make no sense.
 fn resized(payload: &[u8], chunks: &[(u8, u32)]) -> Option<Vec<u8>> {
-    let mut announced = Announced::read(payload)?;
+    let mut announced = ChunkIndex::read(payload)?;
     let sizes = |kind: u8| chunks.iter().filter(move |chunk| chunk.0 == kind).map(|chunk| chunk.1);
     announced.glue.iter_mut().zip(sizes(kind::GLUE)).for_each(|(glue, size)| glue.1 = size);
     for (kind, bytes) in &mut announced.trailing {

@@ -1,25 +1,30 @@
-//! Bodies of the fuzz targets in `fuzz/`, shared with `tests/findings.rs`. Not part of the API.
+//! Bodies of the fuzz targets in `fuzz/`, shared with `tests/fuzz_regressions.rs`. Not part of the API.
 //!
 //! Each takes any bytes and panics if a promise of the library does not hold.
 
 mod chunks;
 
-use crate::bitstream::announced::Announced;
 use crate::bitstream::chunk::{self, kind};
+use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::header::{self, Action, Grid, Header, Pass};
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::mixture::Mixture;
 use crate::bitstream::pass_table;
-use crate::bitstream::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
-use crate::bitstream::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
+use crate::bitstream::profile::Profile;
+use crate::decoder::{Decoder, LevelMesh, Step, StreamInfo, Update};
 use crate::descriptors::{Descriptor, Window};
+use crate::encoder::{EncodeOptions, encode_with_attributes};
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::mixture::Mixture;
+use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeEncoder};
+use crate::entropy::residual::{CALLER_CONTEXTS, Expectation, NUM_KINDS, ResidualModel, SIGN_CONTEXTS};
+use crate::error::{DecodeError, EncodeError};
 use crate::io::{self, Format, TerrainOptions};
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, Values, has_three_vertices};
-use crate::passes::cost;
-use crate::{
-    DecodeError, Decoder, EncodeError, EncodeOptions, LevelMesh, Limits, Optimize, Partition, Profile, Step,
-    StreamInfo, TriMesh, Update, encode_with_attributes,
+use crate::limits::Limits;
+use crate::mesh::{
+    Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, TriMesh, Values, has_three_vertices,
 };
+use crate::passes::cost;
+use crate::simplification::partition::Partition;
+use crate::simplification::vertex_selection::Optimize;
 
 const SMALL: Limits = Limits { max_memory: 64 << 20, max_vertices: 100_000, max_levels: 64, max_work: None };
 /// Meshes up to here are walked after every pass, larger ones after the last.
@@ -483,7 +488,7 @@ fn made_up(data: &[u8]) -> Vec<u8> {
     };
     let glue = piece();
     let trailing = [kind::LOOSE, kind::EXACT, kind::VALUES, kind::ORDER].map(|kind| (kind, piece()));
-    let announced = Announced {
+    let announced = ChunkIndex {
         glue: if glue.is_empty() { Vec::new() } else { vec![(0, glue.len() as u32)] },
         trailing: trailing.map(|(kind, payload)| (kind, payload.len() as u32)).to_vec(),
     };

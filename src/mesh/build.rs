@@ -2,7 +2,7 @@
 
 use super::surface::{NO_CORNER, Surface, next, prev};
 use super::tri_mesh::has_three_vertices;
-use crate::parallel::fill;
+use crate::util::parallel::fill;
 use thiserror::Error;
 
 /// Why triangles are not an oriented surface.

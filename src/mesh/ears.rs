@@ -224,7 +224,7 @@ impl Hole {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Cell;
+    use crate::util::simd4::Cell;
 
     fn ears(valences: &[u8], positions: &[[i32; 3]]) -> Vec<usize> {
         let mut bytes = Bytes::default();

@@ -1,12 +1,12 @@
 //! Triangles of the base mesh M⁰ (`format/SPEC.md`, section 7.1), grown over their edges: around one vertex of the boundary
-//! until it is enclosed, then around the next one. Where the vertices lie follows in [`placement`](super::placement).
+//! until it is enclosed, then around the next one. Where the vertices lie follows in [`base_positions`](super::base_positions).
 
-use super::placement::Placement;
-use super::work::Work;
+use super::base_positions::Placement;
+use super::work_budget::WorkBudget;
 use super::{GridMesh, Malformed};
-use crate::bitstream::mixer::{MixedBit, Mixing, PlainBits};
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::tables::Tables;
+use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::tables::Tables;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use std::collections::{HashMap, VecDeque};
@@ -50,9 +50,9 @@ pub(crate) fn code<B: BitCoder>(
     target: Option<&BaseTarget>,
 ) -> Result<Base, Malformed> {
     let mut grower = Grower::new(num_vertices, num_faces, precision, mixing, target);
-    grower.code_some(coder, &mut Work::unlimited())?;
+    grower.code_some(coder, &mut WorkBudget::unlimited())?;
     let mut placement = grower.finish()?;
-    placement.code_some(coder, &mut Work::unlimited())?;
+    placement.code_some(coder, &mut WorkBudget::unlimited())?;
     Ok(placement.finish())
 }
 
@@ -168,7 +168,7 @@ impl<'a> Grower<'a> {
     pub(crate) fn code_some<B: BitCoder>(
         &mut self,
         coder: &mut B,
-        work: &mut Work,
+        work: &mut WorkBudget,
     ) -> Result<bool, Malformed> {
         while self.triangles.len() < self.num_faces {
             if !work.take(1) {
@@ -393,7 +393,7 @@ fn rotate(corner: u32, steps: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
+    use crate::entropy::range_coder::{RangeDecoder, RangeEncoder};
 
     fn round_trip(triangles: &[[u32; 3]], num_vertices: usize) -> usize {
         let surface = Surface::from_triangles(triangles.to_vec(), num_vertices).unwrap();

@@ -3,16 +3,16 @@
 
 use super::patch::{CLOSED, Patches};
 use super::polygon::{FITS, Fit, Polygon, Triangle};
-use super::work::{SWEPT_PER_UNIT, Work};
+use super::work_budget::{SWEPT_PER_UNIT, WorkBudget};
 use super::{EXHAUSTED, GridMesh, Malformed};
-use crate::bitstream::mixer::{MixedBit, Mixing, PlainBits};
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::streams::stream;
-use crate::bitstream::tables::{Tables, index_below};
-use crate::lanes::Cell;
+use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::streams::stream;
+use crate::entropy::tables::{Tables, index_below};
 use crate::mesh::Surface;
 use crate::mesh::ears::MAX_VALENCE;
 use crate::mesh::surface::{NO_CORNER, next, prev};
+use crate::util::simd4::Cell;
 use std::collections::{HashMap, VecDeque};
 
 /// What the encoder wants written, in the numbering of the coarse mesh.
@@ -145,7 +145,7 @@ pub(crate) fn code<B: BitCoder>(
     target: Option<&ConnectivityTarget>,
 ) -> Result<Patches, Malformed> {
     let mut walk = PausedWalk::new(mesh, count);
-    walk.code_some(coder, models, mesh, target, &mut Work::unlimited())?;
+    walk.code_some(coder, models, mesh, target, &mut WorkBudget::unlimited())?;
     walk.finish()
 }
 
@@ -179,7 +179,7 @@ impl PausedWalk {
         models: &mut ConnectivityModels,
         mesh: &GridMesh,
         target: Option<&ConnectivityTarget>,
-        work: &mut Work,
+        work: &mut WorkBudget,
     ) -> Result<bool, Malformed> {
         if !self.count_corners(&mesh.surface, work) {
             return Ok(false);
@@ -190,7 +190,7 @@ impl PausedWalk {
         is_over
     }
 
-    fn count_corners(&mut self, surface: &Surface, work: &mut Work) -> bool {
+    fn count_corners(&mut self, surface: &Surface, work: &mut WorkBudget) -> bool {
         for block in surface.triangles[self.num_counted..].chunks(SWEPT_PER_UNIT) {
             if !work.take(1) {
                 return false;
@@ -274,12 +274,12 @@ impl<'a> Walk<'a> {
     }
 
     /// Goes on until the walk is over (true) or the work is used up.
-    fn code_some<B: BitCoder>(&mut self, coder: &mut B, work: &mut Work) -> Result<bool, Malformed> {
+    fn code_some<B: BitCoder>(&mut self, coder: &mut B, work: &mut WorkBudget) -> Result<bool, Malformed> {
         Ok(self.code_ears(coder, work)? && self.code_patches(coder, work)?)
     }
 
     /// Vertices of valence two that hang on a boundary edge, in the order of the corners.
-    fn code_ears<B: BitCoder>(&mut self, coder: &mut B, work: &mut Work) -> Result<bool, Malformed> {
+    fn code_ears<B: BitCoder>(&mut self, coder: &mut B, work: &mut WorkBudget) -> Result<bool, Malformed> {
         let end = self.opposite.len() as u32;
         while self.next_corner < end {
             let corner = self.next_corner;
@@ -319,7 +319,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    fn code_patches<B: BitCoder>(&mut self, coder: &mut B, work: &mut Work) -> Result<bool, Malformed> {
+    fn code_patches<B: BitCoder>(&mut self, coder: &mut B, work: &mut WorkBudget) -> Result<bool, Malformed> {
         while work.take(1) {
             if let Some(gate) = self.gates.pop_front() {
                 if coder.is_exhausted() || coder.is_guessing() {

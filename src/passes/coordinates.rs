@@ -1,25 +1,25 @@
 //! Wavelet coefficients: where each odd vertex lies, relative to its prediction
 //! (`format/SPEC.md`, section 7.4).
 
-use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
+use super::coding_context::CodingContext;
+use super::coordinate_prediction::{NUM_KINDS, PredictionModels, VertexPrediction, log_level};
 use super::patch::Patches;
-use super::surroundings::Surroundings;
-use super::work::Work;
+use super::work_budget::WorkBudget;
 use super::{EXHAUSTED, GridMesh, Malformed};
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::residual::{Expectation, ResidualModel};
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::residual::{Expectation, ResidualModel};
 
 /// Adaptive models, kept from level to level.
 #[derive(Clone)]
 pub(crate) struct CoordinateModels {
-    pub(super) guesses: GuessModels,
+    pub(super) guesses: PredictionModels,
     pub(super) residuals: ResidualModel,
 }
 
 impl CoordinateModels {
     pub(crate) fn new(mixing: Mixing) -> Self {
-        Self { guesses: GuessModels::new(), residuals: ResidualModel::new(mixing) }
+        Self { guesses: PredictionModels::new(), residuals: ResidualModel::new(mixing) }
     }
 
     /// Codes the three coordinates of a vertex, each between 0 and `limit`.
@@ -27,8 +27,8 @@ impl CoordinateModels {
     pub(super) fn code_vertex<B: BitCoder>(
         &mut self,
         coder: &mut B,
-        vertex: &mut VertexGuess,
-        surroundings: &Surroundings,
+        vertex: &mut VertexPrediction,
+        surroundings: &CodingContext,
         limit: i64,
         wanted: [i32; 3],
     ) -> Result<[i32; 3], Malformed> {
@@ -72,7 +72,7 @@ pub(crate) fn code<B: BitCoder>(
     precision: u32,
     target: Option<&[[i32; 3]]>,
 ) -> Result<(), Malformed> {
-    code_some(coder, models, mesh, patches, precision, target, &mut Work::unlimited()).map(drop)
+    code_some(coder, models, mesh, patches, precision, target, &mut WorkBudget::unlimited()).map(drop)
 }
 
 /// Goes on from the first vertex that has no position; true if all have one, or a cut payload has told what
@@ -84,9 +84,9 @@ pub(crate) fn code_some<B: BitCoder>(
     patches: &Patches,
     precision: u32,
     target: Option<&[[i32; 3]]>,
-    work: &mut Work,
+    work: &mut WorkBudget,
 ) -> Result<bool, Malformed> {
-    let mut surroundings = Surroundings::default();
+    let mut surroundings = CodingContext::default();
     let limit = 1_i64 << precision;
     let first_odd = mesh.surface.corner_of.len() - patches.len();
     for patch in mesh.positions.len() - first_odd..patches.len() {
@@ -97,7 +97,7 @@ pub(crate) fn code_some<B: BitCoder>(
             return Err(Malformed(EXHAUSTED));
         }
         surroundings.gather_odd(mesh, patches, patch);
-        let mut vertex = VertexGuess::new(&models.guesses, &surroundings);
+        let mut vertex = VertexPrediction::new(&models.guesses, &surroundings);
         let wanted = target.map_or([0; 3], |t| t[patch]);
         let position = models.code_vertex(coder, &mut vertex, &surroundings, limit, wanted)?;
         if coder.is_guessing() {

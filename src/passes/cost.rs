@@ -1,7 +1,8 @@
 //! What chunks cost a decoder, from counts alone (`format/SPEC.md`, section 10): encoders see to it that their bytes earn
 //! it, decoders refuse those that do not.
 //!
-//! A unit is one edge or triangle looked at. Each number is a bound on what [`Work`](super::work::Work) counts.
+//! A unit is one edge or triangle looked at. Each number is a bound on what a
+//! [`WorkBudget`](super::work_budget::WorkBudget) counts.
 
 use crate::bitstream::header::{Action, Pass};
 

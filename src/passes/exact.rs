@@ -1,11 +1,11 @@
 //! Coordinates bit for bit (`format/SPEC.md`, section 7.8): which of the numbers that lie in a cell it is.
 
-use super::ladder::{Ladder, Scale};
+use super::float_values::{Ladder, Scale};
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::bitstream::header::Grid;
-use crate::bitstream::mixer::PlainBits;
-use crate::bitstream::range_coder::BitCoder;
+use crate::entropy::context_mixer::PlainBits;
+use crate::entropy::range_coder::BitCoder;
 use std::collections::HashMap;
 
 /// Bytes in front of the coded coordinates: whether the file had doubles, and the scale of each axis.

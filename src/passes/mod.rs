@@ -3,30 +3,30 @@
 //!
 //! The encoder hands the truth in as a `target`; the decoder has none and gets it back.
 //!
-//! [`BitCoder`]: crate::bitstream::range_coder::BitCoder
+//! [`BitCoder`]: crate::entropy::range_coder::BitCoder
 
 pub(crate) mod attribute;
 pub(crate) mod base;
+pub(crate) mod base_positions;
+mod base_traversal;
+pub(crate) mod coding_context;
 pub(crate) mod compensation;
 pub(crate) mod connectivity;
+pub(crate) mod coordinate_prediction;
 pub(crate) mod coordinates;
+pub(crate) mod coordinates_fast;
 pub(crate) mod cost;
 pub(crate) mod exact;
-pub(crate) mod glue;
-pub(crate) mod guess;
-pub(crate) mod ladder;
-pub(crate) mod loose;
+pub(crate) mod float_values;
+pub(crate) mod isolated_and_degenerate;
 pub(crate) mod numbers;
 pub(crate) mod order;
 pub(crate) mod patch;
-pub(crate) mod placement;
-mod placing_order;
-pub(crate) mod plain;
 mod polygon;
 pub(crate) mod refine;
-pub(crate) mod surroundings;
+pub(crate) mod stitching;
 pub(crate) mod values;
-pub(crate) mod work;
+pub(crate) mod work_budget;
 
 use crate::mesh::Surface;
 

@@ -1,7 +1,7 @@
 //! Whole numbers of any size in adaptive bits (`format/SPEC.md`, section 6.5).
 
-use crate::bitstream::mixer::PlainBits;
-use crate::bitstream::range_coder::BitCoder;
+use crate::entropy::context_mixer::PlainBits;
+use crate::entropy::range_coder::BitCoder;
 
 /// Largest number of digits of a number and one.
 const MAX_DIGITS: usize = 48;
@@ -54,7 +54,7 @@ impl Numbers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bitstream::range_coder::{RangeDecoder, RangeEncoder};
+    use crate::entropy::range_coder::{RangeDecoder, RangeEncoder};
 
     #[test]
     fn every_number_returns_and_frequent_ones_are_cheap() {

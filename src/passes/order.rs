@@ -3,9 +3,8 @@
 
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
-use crate::TriMesh;
-use crate::bitstream::range_coder::BitCoder;
-use crate::mesh::CornersAt;
+use crate::entropy::range_coder::BitCoder;
+use crate::mesh::{CornersAt, TriMesh};
 
 /// Where the vertices and triangles of a mesh stand in the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 //! [`ears`](crate::mesh::ears) would have closed it by the patch's own triangles
 //! (`format/SPEC.md`, section 7.2).
 
-use crate::lanes::Cell;
 use crate::mesh::ears::{Bytes, Hole, IN_ORDER, MAX_CORNERS};
+use crate::util::simd4::Cell;
 
 /// The first triangle of a patch, counter-clockwise from the gate on.
 pub(super) struct Triangle {

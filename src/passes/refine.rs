@@ -1,12 +1,12 @@
 //! One more bit of precision for every vertex (`format/SPEC.md`, section 7.5).
 
 use super::GridMesh;
-use super::guess::{GuessModels, NUM_KINDS, VertexGuess, log_level};
-use super::surroundings::{NUM_CLASSES, Surroundings};
-use super::work::Work;
-use crate::bitstream::mixer::{MixedBit, Mixing};
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::tables::{Tables, index_below};
+use super::coding_context::{CodingContext, NUM_CLASSES};
+use super::coordinate_prediction::{NUM_KINDS, PredictionModels, VertexPrediction, log_level};
+use super::work_budget::WorkBudget;
+use crate::entropy::context_mixer::{MixedBit, Mixing};
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::tables::{Tables, index_below};
 
 /// Buckets of the centre's distance from the boundary between the halves of a cell.
 const OFFSETS: usize = 32;
@@ -19,14 +19,14 @@ const LEAST_MASS: f32 = 1e-6;
 /// Adaptive models, kept from pass to pass.
 #[derive(Clone)]
 pub(crate) struct RefineModels {
-    guesses: GuessModels,
+    guesses: PredictionModels,
     bit: MixedBit<4>,
 }
 
 impl RefineModels {
     pub(crate) fn new(mixing: Mixing) -> Self {
         let sizes = [OFFSETS * SCALES, OFFSETS * NUM_CLASSES, OFFSETS * NUM_KINDS, OFFSETS * SCALES];
-        Self { guesses: GuessModels::new(), bit: MixedBit::new(mixing, sizes, NUM_KINDS, 0.4, LIMIT) }
+        Self { guesses: PredictionModels::new(), bit: MixedBit::new(mixing, sizes, NUM_KINDS, 0.4, LIMIT) }
     }
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn code<B: BitCoder>(
     target: Option<&[[i32; 3]]>,
 ) {
     mesh.positions.iter_mut().flatten().for_each(|c| *c *= 2);
-    code_some(coder, models, mesh, &mut 0, target, &mut Work::unlimited());
+    code_some(coder, models, mesh, &mut 0, target, &mut WorkBudget::unlimited());
 }
 
 /// Goes on with the vertex `next`, where all coordinates are doubled already; true if all are done.
@@ -50,17 +50,17 @@ pub(crate) fn code_some<B: BitCoder>(
     mesh: &mut GridMesh,
     next: &mut usize,
     target: Option<&[[i32; 3]]>,
-    work: &mut Work,
+    work: &mut WorkBudget,
 ) -> bool {
     let tables = Tables::get();
-    let mut surroundings = Surroundings::default();
+    let mut surroundings = CodingContext::default();
     for v in *next..mesh.positions.len() {
         if !work.take(mesh.surface.valence[v] as usize) {
             *next = v;
             return false;
         }
         surroundings.gather_refined(mesh, v);
-        let mut vertex = VertexGuess::new(&models.guesses, &surroundings);
+        let mut vertex = VertexPrediction::new(&models.guesses, &surroundings);
         let class = surroundings.class;
         for kind in 0..NUM_KINDS {
             let guess = vertex.coordinate(&models.guesses, kind);

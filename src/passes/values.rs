@@ -4,13 +4,13 @@ use super::attribute::declaration::bits_of;
 use super::attribute::octahedron::Octahedron;
 use super::attribute::{Coding, Declaration, Rows};
 use super::exact::{ExactCoder, Keyed};
-use super::ladder::{Ladder, Scale};
+use super::float_values::{Ladder, Scale};
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
-use crate::bitstream::bytes::Reader;
-use crate::bitstream::mixer::PlainBits;
-use crate::bitstream::range_coder::BitCoder;
+use crate::entropy::context_mixer::PlainBits;
+use crate::entropy::range_coder::BitCoder;
 use crate::mesh::{MAX_COMPONENTS, NO_ROW, ScalarType, Values};
+use crate::util::bytes::Reader;
 use std::collections::HashMap;
 
 /// The ladders of an attribute's components; `None` if its rows are exact as they are, or need not be.

@@ -20,7 +20,7 @@ pub use options::{DecodeOptions, EncodeOptions, lwc_decode_options_default, lwc_
 use attributes::Texts;
 use error::guard;
 use lwc::mesh::Attributes;
-use lwc::{PassKind, Placing, TriMesh};
+use lwc::{PassKind, PositionUpdater, TriMesh};
 use std::slice;
 
 /// A mesh with its attributes, that owns its arrays.
@@ -372,7 +372,7 @@ impl Decoder {
         let vertices = update.vertices.start as usize..update.vertices.end as usize;
         if let Some(mesh) = self.decoder.mesh() {
             self.positions.resize(mesh.num_vertices(), [0.0; 3]);
-            let mut placing = Placing::new(&mesh);
+            let mut placing = PositionUpdater::new(&mesh);
             placing.advance(&mesh, usize::MAX);
             for v in vertices {
                 self.positions[v] = placing.position(&mesh, v);

@@ -5,11 +5,11 @@
 //! looks up indices before it has checked them: a damaged file makes it panic.
 
 mod accessor;
+mod instances;
 mod json;
 mod materials;
 mod mesh;
 mod nodes;
-mod places;
 mod source;
 mod write;
 

@@ -1,6 +1,6 @@
 //! Writing glTF 2.0: one primitive for each material of a mesh, one buffer.
 
-use super::places::Nodes;
+use super::instances::Nodes;
 use crate::{
     io::{Scene, WriteError, WriteReport, texture::oriented},
     mesh::{Attribute, Attributes, Domain, GltfMaterials, NO_ROW, ScalarType, Semantic, TriMesh, Values},

@@ -5,7 +5,7 @@
 //! through the file once, statement by statement, so that a compressed file is never in memory as a whole.
 //! What vertices, faces and corners have besides positions is gathered beside them ([`Gathered`]).
 
-mod gathered;
+mod corner_tables;
 mod references;
 mod statements;
 mod write;
@@ -18,7 +18,7 @@ use super::{
     source::Source,
     text::{parse_number, quoted},
 };
-use gathered::Gathered;
+use corner_tables::Gathered;
 use references::References;
 use statements::{Statement, Statements};
 

@@ -1,10 +1,10 @@
 //! Rows that are known around a row that is coded now.
 
 use super::rows::Rows;
-use crate::lanes::Lanes;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::mesh::{NO_ROW, Surface};
 use crate::passes::GridMesh;
+use crate::util::simd4::Lanes;
 
 /// A row and the way to where it stands, from the place of the row that is coded.
 #[derive(Clone, Copy, Debug)]

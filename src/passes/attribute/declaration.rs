@@ -1,11 +1,11 @@
 //! What a stream says of its attributes before it has any values (`format/SPEC.md`, section 4.5).
 
 use super::octahedron::Octahedron;
-use crate::bitstream::budget::Budget;
-use crate::bitstream::bytes::Reader;
-#[cfg(any(feature = "encoder", test))]
-use crate::bitstream::bytes::write_varint;
 use crate::mesh::{Domain, MAX_COMPONENTS, ScalarType, Semantic, Values};
+use crate::util::budget::Budget;
+use crate::util::bytes::Reader;
+#[cfg(any(feature = "encoder", test))]
+use crate::util::bytes::write_varint;
 use std::sync::Arc;
 
 /// Most attributes of a stream.

@@ -3,17 +3,17 @@
 use super::around::Around;
 use super::octahedron::{Octahedron, project};
 use super::rows::Rows;
-use crate::bitstream::mixer::Mixing;
-use crate::bitstream::mixture::Mixture;
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::residual::{Expectation, NUM_KINDS, ResidualModel};
-use crate::bitstream::tables::{exp2, log2};
-use crate::lanes::Lanes;
-use crate::lifting::filter::{Filter, sum};
-use crate::lifting::plane_fit::PlaneFit;
-use crate::passes::guess::{
+use crate::entropy::context_mixer::Mixing;
+use crate::entropy::mixture::Mixture;
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::residual::{Expectation, NUM_KINDS, ResidualModel};
+use crate::entropy::tables::{exp2, log2};
+use crate::passes::coordinate_prediction::{
     FLOOR, MAX_CENTRE, NUM_CUES, SHARPNESS_FACTOR, ScaleModel, TRUST_LEVELS, TRUST_RATE, log_level,
 };
+use crate::prediction::plane_fit::PlaneFit;
+use crate::prediction::rls::{Filter, sum};
+use crate::util::simd4::Lanes;
 
 /// What the channels mean together.
 #[derive(Clone, Copy, Debug)]

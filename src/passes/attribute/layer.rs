@@ -5,15 +5,15 @@ use super::declaration::{Coding, Declaration};
 use super::forecast::{Flavour, NumberModels, Scratch};
 use super::octahedron::Octahedron;
 use super::rows::Rows;
-use crate::bitstream::mixer::{MixedBit, Mixing, PlainBits};
-use crate::bitstream::range_coder::BitCoder;
-use crate::bitstream::tables::Tables;
-use crate::lanes::Lanes;
+use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
+use crate::entropy::range_coder::BitCoder;
+use crate::entropy::tables::Tables;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::mesh::{Domain, NO_ROW, Semantic, Surface};
 use crate::passes::patch::Patches;
-use crate::passes::work::Work;
+use crate::passes::work_budget::WorkBudget;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
+use crate::util::simd4::Lanes;
 
 /// Neighbouring rows that a row may repeat.
 const MAX_REPEATED: usize = 3;
@@ -161,7 +161,7 @@ impl Layer {
         brought: Brought,
         place: &mut usize,
         truth: Option<Truth>,
-        work: &mut Work,
+        work: &mut WorkBudget,
         desk: &mut Desk,
     ) -> Result<bool, Malformed> {
         let Brought { mesh, patches, first } = brought;

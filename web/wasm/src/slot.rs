@@ -1,7 +1,7 @@
 //! One decoder and what its caller may look at.
 
 use crate::shading::{self, Shading};
-use lwc::{DecodeError, DecodeOptions, Decoder, LevelMesh, PassKind, Placing, Step, Update};
+use lwc::{DecodeError, DecodeOptions, Decoder, LevelMesh, PassKind, PositionUpdater, Step, Update};
 
 /// Runs of rewritten triangles this near to each other are given as one: the triangles between cost less
 /// than the numbers.
@@ -16,7 +16,7 @@ pub struct Slot {
     /// Vertices from this one on have moved since their positions were computed.
     fresh: usize,
     /// Where they are shown, of the mesh after the last pass.
-    placing: Option<Placing>,
+    placing: Option<PositionUpdater>,
     shading: Option<Shading>,
     report: Vec<u32>,
     info: Vec<f64>,
@@ -101,7 +101,7 @@ impl Slot {
         let (Some(mesh), Some(info)) = (self.decoder.mesh(), self.decoder.info()) else { return true };
         let origin = if self.relative { info.origin() } else { [0.0; 3] };
         let count = mesh.num_vertices();
-        let placing = self.placing.get_or_insert_with(|| Placing::new(&mesh));
+        let placing = self.placing.get_or_insert_with(|| PositionUpdater::new(&mesh));
         let Some(mut left) = placing.advance(&mesh, elements) else { return false };
         let end = count.min(self.fresh.saturating_add(left));
         left -= end - self.fresh;

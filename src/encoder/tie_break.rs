@@ -1,0 +1,99 @@
+//! What tells vertices and triangles apart that lie in the same place: the values of their attributes, as a decoder
+//! will have them.
+
+use super::attributes::{Elements, quantise};
+use super::options::EncodeOptions;
+use crate::mesh::surface::turns;
+use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, TriMesh, Values};
+use crate::passes::attribute::Coding;
+
+/// A number for each element of a mesh; elements that no stream keeps have any.
+pub(super) struct Signatures {
+    pub(super) vertices: Vec<u64>,
+    pub(super) corners: Vec<u64>,
+    pub(super) faces: Vec<u64>,
+}
+
+impl Signatures {
+    /// `None` if there is nothing to look at. `surface` and `loose`: what a stream keeps, in any order.
+    pub(super) fn new(
+        mesh: &TriMesh,
+        attributes: &Attributes,
+        surface: Elements,
+        loose: Elements,
+        options: &EncodeOptions,
+    ) -> Option<Self> {
+        if attributes.list.is_empty() && !options.lossless {
+            return None;
+        }
+        let none = |domain: Domain| vec![0; domain.num_elements(mesh)];
+        let mut all =
+            Self { vertices: none(Domain::Vertex), corners: none(Domain::Corner), faces: none(Domain::Face) };
+        if options.lossless {
+            let bits = |p: &[f64; 3]| p.iter().fold(1, |hash, x| mix(hash ^ x.to_bits()));
+            all.vertices = mesh.positions().iter().map(bits).collect();
+            for attribute in &attributes.list {
+                let hash = |element: usize| {
+                    attribute.row(element).map(|row| row_hash(&attribute.values, attribute, row))
+                };
+                all.add(attribute.domain, (0..attribute.domain.num_elements(mesh)).map(|k| (k, hash(k))));
+            }
+            return Some(all);
+        }
+        // Attributes that do not fit are an error later.
+        let quantised = quantise(mesh, attributes, surface, loose, options).ok()?;
+        for (one, attribute) in quantised.list.iter().zip(&attributes.list) {
+            let n = one.declaration.num_channels();
+            let hash = |row: u32| {
+                let channels = (row != NO_ROW).then(|| &one.rows[row as usize * n..][..n])?;
+                Some(match &one.declaration.coding {
+                    Coding::Table { rows } => row_hash(rows, attribute, channels[0] as usize),
+                    _ => channels.iter().fold(1, |hash, &c| mix(hash ^ c as u64)),
+                })
+            };
+            let of = surface.of(attribute.domain).into_iter().zip(one.of.iter().copied());
+            let of = of.chain(one.loose.iter().map(|(&element, &row)| (element, row)));
+            all.add(attribute.domain, of.map(|(element, row)| (element as usize, hash(row))));
+        }
+        Some(all)
+    }
+
+    fn add(&mut self, domain: Domain, values: impl Iterator<Item = (usize, Option<u64>)>) {
+        let list = match domain {
+            Domain::Vertex => &mut self.vertices,
+            Domain::Corner => &mut self.corners,
+            Domain::Face => &mut self.faces,
+        };
+        for (element, hash) in values {
+            list[element] = mix(list[element] ^ hash.map_or(2, mix));
+        }
+    }
+
+    /// What tells a triangle apart that begins with a corner.
+    pub(super) fn triangle(&self, corner: u32) -> u64 {
+        let corners = turns(corner).map(|c| self.corners[c as usize]);
+        corners.into_iter().fold(self.faces[(corner / 3) as usize], |hash, c| mix(hash ^ c))
+    }
+
+    /// What a corner tells the vertex at it.
+    pub(super) fn corner(&self, corner: u32) -> u64 {
+        mix(self.triangle(corner))
+    }
+}
+
+/// Hash of the bits, or the name, of a row of some values like those of an attribute.
+fn row_hash(values: &Values, attribute: &Attribute, row: usize) -> u64 {
+    let n = attribute.num_components;
+    match values.names() {
+        Some(names) => names[row].bytes().fold(1, |hash, byte| mix(hash ^ u64::from(byte))),
+        None => (row * n..row * n + n).filter_map(|k| values.bits(k)).fold(1, |hash, bits| mix(hash ^ bits)),
+    }
+}
+
+/// Scatters the bits of a number (the finaliser of SplitMix64).
+pub(super) fn mix(x: u64) -> u64 {
+    let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}

@@ -1,0 +1,8 @@
+//! What every room may use: numbers in bytes, memory that is counted, lanes, threads. Knows neither meshes nor streams.
+
+pub(crate) mod budget;
+pub(crate) mod bytes;
+#[cfg(feature = "encoder")]
+pub(crate) mod morton;
+pub(crate) mod parallel;
+pub(crate) mod simd4;

@@ -1,0 +1,56 @@
+//! What fuzzing found, each with its story. Run with `--features fuzzing`.
+#![cfg(feature = "fuzzing")]
+
+use lwc::fuzzing;
+use std::path::Path;
+
+fn finding(name: &str) -> Vec<u8> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz_regressions").join(name);
+    std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Improbable ones coded to nothing but zeros; the encoder dropped more of them than a decoder may
+/// read past the end of a payload.
+#[test]
+fn a_payload_of_zeros_is_not_damage() {
+    fuzzing::range_coder(&finding("range_coder_payload_of_zeros.bin"));
+}
+
+/// A cut chunk of attributes that was nonsense left those behind it without any value.
+#[test]
+fn attributes_are_without_gaps_whatever_has_come() {
+    fuzzing::decode(&finding("decode_attributes_of_nonsense.bin"));
+}
+
+/// A few inputs of the fuzz targets that reach attributes, made up without a fuzzer.
+#[test]
+fn attributes_survive_random_meshes_and_damage() {
+    let mut seed = 7_u64;
+    let mut random = |count: usize| -> Vec<u8> {
+        (0..count)
+            .map(|_| {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (seed >> 56) as u8
+            })
+            .collect()
+    };
+    for size in (20..900).step_by(9) {
+        fuzzing::round_trip(&random(size));
+    }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("format/golden");
+    for name in ["colours", "texture-seams", "flat-normals", "materials"] {
+        let stream = std::fs::read(folder.join(name).with_extension("lwc")).unwrap_or_default();
+        assert!(!stream.is_empty(), "{name}");
+        for _ in 0..400 {
+            let mut bad = stream.clone();
+            let noise = random(9);
+            for bite in noise.chunks_exact(3) {
+                let at = (usize::from(bite[0]) << 8 | usize::from(bite[1])) % bad.len();
+                bad[at] ^= bite[2];
+            }
+            bad.insert(0, 1);
+            fuzzing::decode(&bad);
+            fuzzing::split_independent(&[&noise[..8], &bad].concat());
+        }
+    }
+}
