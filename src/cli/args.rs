@@ -46,6 +46,8 @@ pub enum Command {
     Filter(super::filter::Filter),
     Edit(super::edit::Edit),
     View(View),
+    Completions(super::completions::Completions),
+    Man(super::man::Man),
 }
 
 /// Encode a mesh (.obj .ply .stl .glb .gltf) or a terrain point cloud (.las .laz), plain or compressed (.zst).
