@@ -31,5 +31,7 @@ fn dispatch(args: &Args, ui: &Ui) -> anyhow::Result<()> {
         Command::Filter(args) => cli::filter::run(args, ui),
         Command::Edit(args) => cli::edit::run(args, ui),
         Command::View(args) => cli::view::run(args, ui),
+        Command::Completions(args) => cli::completions::run(args),
+        Command::Man(args) => cli::man::run(args, ui),
     }
 }

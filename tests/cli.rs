@@ -9,6 +9,7 @@ use common::*;
 use lwc::descriptors::{Descriptor, Window, evaluate, mean_edge_length};
 use lwc::{TriMesh, io};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
@@ -125,6 +126,94 @@ fn help_names_commands_exit_codes_defaults_and_ranges() {
         assert!(workshop.ok(&format!("{command} -h")).0.contains("Usage: lwc"));
     }
     assert_eq!(workshop.ok("--version").0, concat!("lwc ", env!("CARGO_PKG_VERSION"), "\n"));
+}
+
+/// The long options that a text names.
+fn options_in(text: &str) -> BTreeSet<&str> {
+    let is_part = |c: char| c.is_ascii_lowercase() || c == '-';
+    let words = text.split(|c| !is_part(c));
+    words.filter(|word| word.starts_with("--")).map(|word| word.trim_end_matches('-')).collect()
+}
+
+/// The names of all commands.
+fn commands(workshop: &Workshop) -> Vec<String> {
+    let (help, _) = workshop.ok("--help");
+    let lines = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let names = lines.take_while(|line| !line.is_empty()).filter_map(|line| line.strip_prefix("  "));
+    // The lines of long descriptions go on further to the right.
+    let names = names.filter(|line| !line.starts_with(' ')).filter_map(|line| line.split(' ').next());
+    names.map(str::to_owned).collect()
+}
+
+#[test]
+fn every_shell_gets_its_completions() {
+    let workshop = Workshop::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let (script, stderr) = workshop.ok(&format!("completions {shell}"));
+        // Fish has no dashes in front of the names.
+        let option = if shell == "fish" { "-l descriptor " } else { "--descriptor" };
+        for part in ["encode", option] {
+            assert!(script.contains(part), "{shell}: no {part}");
+        }
+        assert_eq!(stderr, "");
+    }
+    workshop.fails("completions", 2);
+    workshop.fails("completions tcsh", 2);
+}
+
+#[test]
+fn every_command_has_a_manual_page_with_all_options_of_its_help() {
+    let workshop = Workshop::new();
+    let commands = commands(&workshop);
+    assert!(commands.len() >= 12, "{commands:?}");
+    let (stdout, stderr) = workshop.ok("man pages/man1");
+    let num_pages = commands.len() + 1;
+    assert_eq!((stdout, stderr), (format!("pages/man1: {num_pages} manual pages\n"), String::new()));
+    assert_eq!(fs::read_dir(workshop.path("pages/man1")).unwrap().count(), num_pages);
+
+    let mut pages = vec![("--help".to_owned(), "lwc".to_owned())];
+    pages.extend(commands.iter().map(|name| (format!("{name} --help"), format!("lwc-{name}"))));
+    for (line, name) in pages {
+        let page = fs::read_to_string(workshop.path(&format!("pages/man1/{name}.1"))).unwrap();
+        assert!(page.starts_with('.'), "{name}: {page}");
+        assert!(
+            page.contains(&format!("\n.TH {name} 1 ")) && page.contains("\n.SH NAME\n"),
+            "{name}: {page}"
+        );
+        let plain = ["\\fB", "\\fI", "\\fR", "\\"].iter().fold(page, |page, mark| page.replace(mark, ""));
+        let help = workshop.ok(&line).0;
+        let (documented, shown) = (options_in(&plain), options_in(&help));
+        assert!(shown.contains("--threads") && shown.is_subset(&documented), "{name}: {shown:?}");
+    }
+    // A second time the pages are replaced.
+    assert_eq!(workshop.ok("man pages/man1 --quiet"), (String::new(), String::new()));
+    let first = fs::read_to_string(workshop.path("pages/man1/lwc.1")).unwrap();
+    assert_eq!(workshop.ok("man").0, first);
+    assert_eq!(workshop.ok("man -").0, first);
+}
+
+#[test]
+fn manual_pages_that_cannot_be_written_are_named() {
+    let workshop = Workshop::new();
+    let stderr = workshop.fails("man ball.ply", 1);
+    assert_eq!(error_line(&stderr), "lwc: ball.ply: it is not a folder");
+    let stderr = workshop.fails("man ball.ply/man1", 1);
+    assert!(error_line(&stderr).starts_with("lwc: ball.ply/man1: "), "{stderr}");
+    fs::create_dir_all(workshop.path("man1/lwc-info.1")).unwrap();
+    let stderr = failed("man man1", workshop.run("man man1"), 1);
+    assert!(error_line(&stderr).starts_with("lwc: man1/lwc-info.1: "), "{stderr}");
+}
+
+#[test]
+fn nobody_has_to_read_completions_and_pages_to_the_end() {
+    for line in ["completions bash", "man"] {
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("lwc"));
+        let command = command.args(line.split(' ')).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("a run");
+        drop(child.stdout.take());
+        let output = child.wait_with_output().expect("a run");
+        assert_eq!((output.status.code(), text(output.stderr)), (Some(0), String::new()), "{line}");
+    }
 }
 
 #[test]

@@ -26,10 +26,10 @@ pub struct Global {
     #[arg(long, global = true, value_name = "N", default_value_t = 0)]
     #[arg(value_parser = value_parser!(u32).range(0..=1024))]
     pub threads: u32,
-    /// No summary, no warnings, no progress bars: only errors, and what was asked for.
+    /// Print no summary, warnings or progress bars: only errors, and what was asked for.
     #[arg(long, global = true)]
     pub quiet: bool,
-    /// Tells more on standard error.
+    /// Print more details on standard error.
     #[arg(short, long, global = true, action = ArgAction::Count, conflicts_with = "quiet")]
     pub verbose: u8,
 }
@@ -46,19 +46,21 @@ pub enum Command {
     Filter(super::filter::Filter),
     Edit(super::edit::Edit),
     View(View),
+    Completions(super::completions::Completions),
+    Man(super::man::Man),
 }
 
-/// Encode a mesh file (.obj .ply .stl .glb .gltf) or a point cloud of terrain (.las .laz), each also as .zst.
+/// Encode a mesh (.obj .ply .stl .glb .gltf) or a terrain point cloud (.las .laz), plain or compressed (.zst).
 ///
-/// The finest level is the mesh on a grid of 2^BITS cells along its longest side; every oriented
-/// triangle comes back exactly. What has to be dropped or cut is counted in warnings.
+/// The finest level is the mesh with its vertices rounded to a grid of 2^BITS cells along its longest side;
+/// every triangle comes back, with its orientation. Warnings count what has to be dropped or cut.
 #[derive(Debug, clap::Args)]
 pub struct Encode {
     /// Mesh to encode.
     #[arg(value_name = "MODEL")]
     pub input: PathBuf,
-    /// Stream to write, `-` for standard output. Default: MODEL with the ending .lwc, beside MODEL. The endings of meshes are
-    /// refused.
+    /// Stream to write, `-` for standard output. Default: MODEL with the ending .lwc, in the same folder. The endings of
+    /// mesh files are refused.
     ///
     /// A file that exists is replaced once the new one is complete.
     #[arg(short, long, value_name = "FILE")]
@@ -72,32 +74,32 @@ pub struct Encode {
     #[arg(short, long, value_name = "BITS", allow_negative_numbers = true)]
     #[arg(value_parser = value_parser!(u32).range(1..=30))]
     pub quantization: Option<u32>,
-    /// Levels above the base mesh, 0 to 128, or `auto`: until the base mesh is small.
+    /// Levels above the base mesh, 0 to 128, or `auto`: as many as it takes to a small base mesh.
     #[arg(long, value_name = "N", default_value = "auto", allow_negative_numbers = true)]
     #[arg(value_parser = levels)]
     pub levels: Levels,
-    /// Factor of the radius from each level to the next coarser one, 1 to 16.
+    /// Factor by which the radius grows from each level to the next coarser one, 1 to 16.
     #[arg(long, value_name = "FACTOR", default_value_t = EncodeOptions::default().growth)]
     #[arg(allow_negative_numbers = true, value_parser = quantity::number(1.0, 16.0))]
     pub growth: f64,
     /// How the vertices that a level removes are chosen.
     ///
-    /// - balanced: error and descriptor say which vertices stay, the cost of coding which others go
-    /// - algorithm1: the paper's Algorithm 1 to the letter
+    /// - balanced: error and descriptor decide which vertices stay, the cost of coding which of the others go
+    /// - algorithm1: exactly the paper's Algorithm 1
     #[arg(long, value_name = "NAME", verbatim_doc_comment)]
     #[arg(default_value = EncodeOptions::default().partition.name(), value_parser = partition_parser())]
     pub partition: Partition,
     /// What the balanced partition aims at.
     ///
-    /// - size: the smallest whole file; the descriptor has no say, and with --levels auto there are none where that is smaller
-    /// - balanced: prefixes nearly as good as they get, for a file a little larger
-    /// - prefix: the best prefixes
+    /// - size: the smallest file; the descriptor is not used, and --levels auto leaves out the levels where that is smaller
+    /// - balanced: the beginning of a file shows nearly as good a mesh as with prefix, and the file is smaller
+    /// - prefix: the beginning of a file shows the best mesh
     #[arg(long, value_name = "AIM", verbatim_doc_comment)]
     #[arg(default_value = EncodeOptions::default().optimize.name(), value_parser = optimize_parser())]
     pub optimize: Optimize,
     /// How the passes are coded. Default: max with `--optimize size`, else small.
     ///
-    /// All decode to the same meshes, but that `--optimize size` never makes one piece with fast.
+    /// All give the same meshes, except that `--optimize size` always keeps the levels with fast.
     ///
     /// - max: arithmetic coding with the largest models, which takes 1.3 to 1.5 times as long to decode as small
     /// - small: arithmetic coding, a stream half a percent to 1 % larger than with max
@@ -107,18 +109,18 @@ pub struct Encode {
     pub profile: Option<Profile>,
     /// Time to spend, 0 to 9.
     ///
-    /// - 0 to 2: no descriptor in the balanced partition, and of --optimize size one try
-    /// - 3 to 6: as usual
-    /// - 7, 8: with --optimize size more schedules of precision are tried, and the smallest kept
-    /// - 9: and other partitions, each with all schedules
+    /// - 0 to 2: the balanced partition does not use the descriptor, and --optimize size makes one try
+    /// - 3 to 6: the usual search
+    /// - 7, 8: --optimize size also tries other ways to spread the precision over the passes, and keeps the smallest file
+    /// - 9: --optimize size also tries other partitions, each in all these ways
     #[arg(long, value_name = "N", verbatim_doc_comment)]
     #[arg(default_value_t = EncodeOptions::default().effort, value_parser = clap::value_parser!(u32).range(0..=9))]
     pub effort: u32,
-    /// Grid steps to the mean edge of a level, 0.5 to 1e9 [default: by the error of each level].
+    /// Grid steps per mean edge length of a level, 0.5 to 1e9 [default: chosen by the error of each level].
     #[arg(long, value_name = "STEPS")]
     #[arg(allow_negative_numbers = true, value_parser = quantity::number(0.5, 1e9))]
     pub steps_per_edge: Option<f64>,
-    /// Bits of each of the two coordinates of a normal on the octahedron, 2 to 30.
+    /// Bits of each of the two coordinates of a normal (octahedral mapping), 2 to 30.
     #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().normal_bits)]
     #[arg(value_parser = value_parser!(u32).range(2..=30), allow_negative_numbers = true)]
     pub normal_bits: u32,
@@ -126,7 +128,7 @@ pub struct Encode {
     #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().uv_bits)]
     #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
     pub uv_bits: u32,
-    /// Bits of each component of a colour, 1 to 30. Those of 8 bits are kept exactly with 8.
+    /// Bits of each component of a colour, 1 to 30. Colours of 8 bits are kept exactly with 8.
     #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().color_bits)]
     #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
     pub color_bits: u32,
@@ -134,29 +136,30 @@ pub struct Encode {
     #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().generic_bits)]
     #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
     pub generic_bits: u32,
-    /// Keep positions and triangles only.
+    /// Keep only positions and triangles.
     #[arg(long)]
     pub no_attributes: bool,
-    /// Keep every number of positions and attributes bit for bit, floats, doubles or integers, behind the last pass.
+    /// Keep every number of positions and attributes bit for bit: floats, doubles and integers. What the grid rounds off is
+    /// stored after the last pass.
     #[arg(long)]
     pub lossless: bool,
-    /// Keep vertices without faces. They are dropped and counted without it.
+    /// Keep vertices that no face uses. Without this option they are dropped and counted.
     #[arg(long)]
     pub keep_isolated: bool,
-    /// Keep faces that name a vertex twice. They are dropped and counted without it.
+    /// Keep faces that have the same vertex twice. Without this option they are dropped and counted.
     #[arg(long)]
     pub keep_degenerate: bool,
-    /// Keep the order of vertices and faces, and the first corner of each face; `lwc info` shows the price.
+    /// Keep the order of vertices and faces, and the first corner of each face; `lwc info` shows how many bytes that takes.
     #[arg(long)]
     pub keep_order: bool,
-    /// Join the meshes of a scene (.glb .gltf) into one, each in its place. Without it each mesh is in the stream once,
-    /// in its own coordinates, with all the places it has.
+    /// Join the meshes of a scene (.glb .gltf) into one, each in its place. Without this option each mesh is stored
+    /// once, in its own coordinates, with a list of all the places where it is used.
     #[arg(long)]
     pub merge: bool,
     /// Decode the stream and compare it with the mesh before it is written.
     #[arg(long)]
     pub verify: bool,
-    /// Print one JSON object in place of the summary (to standard error with `-o -`).
+    /// Print one JSON object instead of the summary (to standard error with `-o -`).
     #[arg(long)]
     pub json: bool,
     #[command(flatten)]
@@ -169,7 +172,7 @@ pub struct Encode {
 /// How mesh files are read.
 #[derive(Debug, clap::Args)]
 pub struct Reading {
-    /// Read .zst files even if they unpack to more than 256 MiB and to more than 1000 times their size.
+    /// Read even .zst files that unpack to both more than 256 MiB and more than 1000 times their size.
     #[arg(long)]
     pub any_ratio: bool,
 }
@@ -192,7 +195,7 @@ pub struct Terrain {
     #[arg(long, value_name = "SIZE", value_parser = quantity::number(f64::MIN_POSITIVE, 1e9))]
     #[arg(allow_negative_numbers = true)]
     pub thin: Option<f64>,
-    /// Keep at most so many points, spread evenly, e.g. 500K.
+    /// Keep at most N points, spread evenly, e.g. 500K.
     #[arg(long, value_name = "N", value_parser = quantity::count, allow_negative_numbers = true)]
     pub max_points: Option<u32>,
 }
@@ -211,14 +214,14 @@ impl Terrain {
 /// Descriptor and window.
 #[derive(Debug, clap::Args)]
 pub struct Scale {
-    /// Measure of saliency.
+    /// Descriptor, the measure of how important (salient) each vertex is.
     #[arg(short, long, value_name = "NAME", default_value_t = Descriptor::default())]
     #[arg(value_parser = descriptor_parser())]
     pub descriptor: Descriptor,
-    /// Attributes that the descriptor sees beside positions: `pca` and `pca-qem` work in any dimension.
+    /// Attributes that the descriptor uses in addition to positions; for `pca` and `pca-qem` only.
     ///
-    /// `color`, `uv`, `normal` or the name of an attribute, separated by commas, each with `:WEIGHT` if its whole
-    /// range is to count like another number of mean edges than 10.
+    /// `color`, `uv`, `normal` or names of attributes, separated by commas. The whole range of an attribute counts
+    /// as much as WEIGHT mean edge lengths, 0 to 1e6, by default 10.
     #[arg(long, value_name = "NAME[:WEIGHT],…", value_delimiter = ',')]
     pub descriptor_attributes: Vec<FeatureChoice>,
     #[command(flatten)]
@@ -228,11 +231,11 @@ pub struct Scale {
 /// Neighbourhood of a vertex that a descriptor sees.
 #[derive(Debug, clap::Args)]
 pub struct WindowArgs {
-    /// Topological radius of the descriptor's window, in edges, 1 to 64.
+    /// Radius of the descriptor's window, the neighbourhood that it looks at: in edges along the surface, 1 to 64.
     #[arg(long, value_name = "N", default_value_t = Window::default().rings, allow_negative_numbers = true)]
     #[arg(value_parser = value_parser!(u32).range(1..=64))]
     pub rings: u32,
-    /// Euclidean radius of the window, in mean edges of the mesh, above 0, at most 1e6.
+    /// Radius of the window in space, in mean edge lengths of the mesh, above 0, at most 1e6.
     #[arg(long, value_name = "R", default_value_t = Window::default().radius)]
     #[arg(allow_negative_numbers = true, value_parser = quantity::number(f64::MIN_POSITIVE, 1e6))]
     pub radius: f64,
@@ -252,9 +255,8 @@ pub struct Decode {
     /// Stream to decode; standard input if it is `-` or missing.
     #[arg(value_name = "FILE.lwc")]
     pub input: Option<PathBuf>,
-    /// Mesh to write, its ending is its format (.obj .ply .stl .glb .gltf, each also with .zst); `-` for
-    /// standard output. Default: model.level5.obj with `--level 5`, model.decoded.obj without, beside
-    /// model.lwc.
+    /// Mesh to write, `-` for standard output. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as
+    /// .obj.zst. Default, in the folder of model.lwc: model.level5.obj with `--level 5`, model.decoded.obj without.
     ///
     /// A file that exists is replaced once the new one is complete; the input is never replaced.
     #[arg(short, long, value_name = "FILE")]
@@ -262,17 +264,17 @@ pub struct Decode {
     /// Stop at this level; 0 is the base mesh. Default: the finest.
     #[arg(short, long, value_name = "K", allow_negative_numbers = true)]
     pub level: Option<u32>,
-    /// Leave the vertices of coarse levels where they are in the finest mesh. Else they are shown a little further out, so
-    /// that the mesh shrinks less where it is coarse.
+    /// Leave the vertices of coarse levels where they are in the finest mesh. By default they are moved a little outwards,
+    /// since coarse meshes shrink.
     #[arg(long)]
     pub uncompensated: bool,
     /// Decode the first N bytes only, e.g. 5000 or 20K. Default: all.
     #[arg(short, long, value_name = "N", value_parser = quantity::bytes, allow_negative_numbers = true)]
     pub bytes: Option<u64>,
-    /// Format on standard output and of the default name. Default: obj.
+    /// Format for standard output and for the default file name. Default: obj.
     #[arg(long, value_name = "FORMAT", value_parser = format_parser())]
     pub format: Option<lwc::io::Format>,
-    /// Write the finest sound mesh of a damaged stream, and succeed with a warning.
+    /// Write the finest intact mesh of a damaged stream, and succeed with a warning.
     #[arg(long)]
     pub salvage: bool,
     #[command(flatten)]
@@ -289,8 +291,8 @@ pub struct LimitArgs {
     #[arg(long, value_name = "N", default_value_t = Limits::default().max_vertices)]
     #[arg(value_parser = quantity::count, allow_negative_numbers = true)]
     pub max_vertices: u32,
-    /// Most work that decoding may take, e.g. 50M: about ten million units a second. By default 128 for each byte of the
-    /// stream and 262144 besides, several times what an ordinary stream takes.
+    /// Most work that decoding may take, e.g. 50M; a second is about ten million units. Default: 262144, and 128 more for
+    /// each byte of the stream, several times what an ordinary stream takes.
     #[arg(long, value_name = "UNITS", value_parser = quantity::units, allow_negative_numbers = true)]
     pub max_work: Option<u64>,
 }
@@ -304,7 +306,7 @@ impl LimitArgs {
 
 /// Show levels, passes and parameters of a stream without decoding it.
 ///
-/// Works on a stream that was cut, once its table of passes is there.
+/// The beginning of a stream is enough, if its table of passes is complete.
 #[derive(Debug, clap::Args)]
 pub struct Info {
     /// Stream to look at; standard input if it is `-` or missing.
@@ -313,7 +315,7 @@ pub struct Info {
     /// Print one JSON object.
     #[arg(long)]
     pub json: bool,
-    /// Draw the distance from the finest mesh over the bytes read, as .svg or .png. Decodes the stream.
+    /// Draw a chart (.svg or .png): the distance from the finest mesh over the bytes read. This decodes the stream.
     #[arg(long, value_name = "FILE", conflicts_with = "json")]
     pub plot: Option<PathBuf>,
     #[command(flatten)]
@@ -345,8 +347,8 @@ pub struct Describe {
 
 /// Measure the distance between two surfaces.
 ///
-/// Root mean square and maximum of the distance to the nearest point of the other, in both directions.
-/// Each file is a mesh (.obj .ply .stl .glb .gltf .las .laz, each also as .zst) or a stream (.lwc).
+/// Root mean square and maximum of the distance to the nearest point of the other surface, in both directions.
+/// Each file is a mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst) or a stream (.lwc).
 #[derive(Debug, clap::Args)]
 pub struct Compare {
     /// Reference: relative values are divided by the diagonal of its bounding box.
@@ -368,16 +370,16 @@ pub struct Compare {
     pub limits: LimitArgs,
 }
 
-/// Show a model in the browser: something at once, finer while it loads.
+/// Show a model in the browser, coarse at once and finer while it loads.
 ///
 /// Serves a page on this machine, prints its address and opens it. A mesh (.obj .ply .stl .glb .gltf .las
-/// .laz, each also as .zst) is encoded first, with default options.
+/// .laz, or compressed, such as .obj.zst) is encoded first, with default options except those below.
 #[derive(Debug, clap::Args)]
 pub struct View {
     /// Stream (.lwc) or mesh to show.
     #[arg(value_name = "MODEL")]
     pub input: PathBuf,
-    /// Port to listen on; 0 is any that is free.
+    /// Port to listen on; 0 chooses one that is free.
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     pub port: u16,
     /// Do not start a browser.

@@ -12,11 +12,11 @@ use lwc::multiresolution::DetailTransfer;
 use std::io::{self, Read, Write};
 use std::path::PathBuf;
 
-/// Put the details of a stream back on a coarse level of it that was changed.
+/// Put the details of a stream back on one of its coarse levels that was edited.
 ///
 /// Decode a level, move its vertices in any program that keeps vertices and faces as they are, and give the
-/// result here: every detail follows the surface that it stands on, so a bent model keeps its wrinkles. Which
-/// level it is shows in the number of vertices.
+/// result here: every detail follows the surface that it stands on, so a bent model keeps its wrinkles. The
+/// level is recognised by its number of vertices.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Example:
@@ -29,7 +29,7 @@ pub struct Edit {
     /// The changed mesh, with the vertices and faces of a level.
     #[arg(value_name = "CHANGED")]
     pub changed: PathBuf,
-    /// Mesh to write, its ending is its format (.obj .ply .stl .glb .gltf, each also with .zst).
+    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.zst.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     #[command(flatten)]

@@ -12,14 +12,14 @@ use thiserror::Error;
 /// The numbers, for the help text.
 pub const HELP: &str = "\
 Exit codes:
-  0  success; also for a stream that ends early, of which the coarser mesh was written
+  0  success; also if a stream ends early and a coarser mesh was written
   1  any other failure, such as an output that cannot be written
   2  wrong usage: an unknown option, a value out of range
   3  an input that cannot be read, or is not a mesh or stream that can be used
   4  a damaged stream, or one that ends before its base mesh
   5  a limit is exceeded
   6  the verification of an encoded stream failed
-  130, 143  stopped by Ctrl-C (SIGINT), by SIGTERM; no unfinished file is left";
+  130, 143  stopped by Ctrl-C (SIGINT) or SIGTERM; no unfinished file is left";
 
 const OTHER: u8 = 1;
 const USAGE: u8 = 2;

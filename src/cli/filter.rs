@@ -16,7 +16,7 @@ use lwc::multiresolution::{Decomposition, Options, Prediction, Threshold, denois
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-/// Smooth or enhance the features of one scale, or take noise away.
+/// Smooth or enhance features of a chosen size, or remove noise.
 ///
 /// The mesh becomes a base mesh, level 0, and the details of levels 1, 2, … up to the finest; the details of
 /// the levels chosen are multiplied and the mesh is put together again, with the same vertices and faces.
@@ -29,10 +29,10 @@ Examples:
   lwc filter model.ply --gain 8..10=2 -o bold.ply        # levels 8 to 10 twice as strong
   lwc filter scan.ply --denoise -o clean.ply")]
 pub struct Filter {
-    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, each also as .zst).
+    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst).
     #[arg(value_name = "MESH")]
     pub input: PathBuf,
-    /// Mesh to write, its ending is its format.
+    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.zst.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Multiply the details of levels: 7=0, 5..=0 (5 and finer), ..3=2 (up to 3), 2..4=1.5 (2, 3 and 4).
@@ -40,13 +40,13 @@ pub struct Filter {
     /// May be given several times; factors of the same level multiply. -1000 to 1000.
     #[arg(long, value_name = "LEVELS=FACTOR", value_parser = Gain::parse)]
     pub gain: Vec<Gain>,
-    /// Take away noise that is independent from vertex to vertex; how much there is comes from the data.
+    /// Remove noise that is independent from vertex to vertex; how strong it is is estimated from the mesh.
     #[arg(long, conflicts_with_all = ["gain", "prediction", "update", "descriptor"])]
     pub denoise: bool,
-    /// How odd vertices are predicted: curved follows the normals of the coarser mesh.
+    /// How the vertices are predicted that the coarser mesh lacks: curved follows the normals of the coarser mesh.
     #[arg(long, value_name = "HOW", default_value = "curved", value_parser = prediction_parser())]
     pub prediction: Prediction,
-    /// Let each coarser mesh average the finer one, in place of sampling it.
+    /// Let each coarser mesh average the finer one, instead of sampling it.
     #[arg(long)]
     pub update: bool,
     #[command(flatten)]
@@ -54,7 +54,7 @@ pub struct Filter {
     /// Levels above the base mesh, 1 to 128. Default: until the base mesh is small.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=128))]
     pub levels: Option<u32>,
-    /// Factor of the window's radius from each level to the next coarser one, 1 to 16.
+    /// Factor by which the window's radius grows from each level to the next coarser one, 1 to 16.
     #[arg(long, value_name = "FACTOR", default_value_t = Options::default().growth)]
     #[arg(value_parser = quantity::number(1.0, 16.0))]
     pub growth: f64,

@@ -2,6 +2,7 @@
 
 pub mod args;
 pub mod compare;
+pub mod completions;
 pub mod decode;
 pub mod describe;
 pub mod edit;
@@ -12,6 +13,7 @@ pub mod filter;
 mod gain;
 pub mod info;
 mod input;
+pub mod man;
 mod output;
 mod passes;
 mod quantity;

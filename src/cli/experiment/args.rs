@@ -3,28 +3,28 @@
 use crate::cli::args::{Reading, WindowArgs};
 use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::value_parser;
+use clap::{ValueHint, value_parser};
 use lwc::descriptors::{Descriptor, NormalWeights, PcaQuadric, UnknownDescriptor};
 use lwc::experiment::{Noise, Settings, Units};
 use std::path::PathBuf;
 
-/// Repeat the paper's experiment: Algorithm 1 on meshes, with each descriptor, and what it costs.
+/// Repeat the paper's experiment: simplify meshes by Algorithm 1 with each descriptor, and measure error and time.
 ///
-/// Per step: vertices, share removed, mean window, average plane distance (eq. 34), seconds. DIR gets
-/// results.json and results.csv, complete after every run, and a chart of each mesh as SVG and PNG. Runs
-/// that DIR has already are not repeated, so an experiment that was stopped goes on where it was, and one
-/// with --noise can join the one without. The end is a ranking of the descriptors over all runs in DIR.
+/// Printed for each step: vertices, share removed, mean window, average plane distance (eq. 34), seconds. DIR
+/// gets results.json and results.csv, complete after every run, and a chart of each mesh as SVG and PNG. Runs
+/// whose results are in DIR are not repeated: an experiment that was stopped continues, and runs with --noise
+/// are added to those without. At the end the descriptors are ranked over all runs in DIR.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Example:
+Examples:
   lwc experiment dragon.ply terrain.ply --out results
   lwc experiment dragon.ply terrain.ply --out results --noise")]
 pub struct Experiment {
-    /// Meshes (.obj .ply .stl .glb .gltf .las .laz, each also as .zst).
+    /// Meshes (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst).
     #[arg(value_name = "MESH", required = true)]
     pub meshes: Vec<PathBuf>,
-    /// Folder for the results; it is made if it is not there.
-    #[arg(short, long, value_name = "DIR")]
+    /// Folder for the results, created if it does not exist.
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
     /// Descriptors, separated by commas, or `all`.
     #[arg(short, long, value_name = "NAMES", default_value = "all", value_parser = descriptors)]
@@ -37,24 +37,24 @@ pub struct Experiment {
     pub reading: Reading,
     #[command(flatten)]
     pub window: WindowArgs,
-    /// Factor of the radius from each step to the next, 1 to 16.
+    /// Factor by which the radius grows from each step to the next, 1 to 16.
     #[arg(long, value_name = "FACTOR", default_value_t = Settings::default().growth)]
     #[arg(value_parser = quantity::number(1.0, 16.0))]
     pub growth: f64,
-    /// Let Gaussian noise drive descriptors and partition; distances stay those of the mesh as it is.
+    /// Let descriptors and partition see the mesh with Gaussian noise; distances are measured on the mesh without it.
     #[arg(long)]
     pub noise: bool,
-    /// Standard deviation of the noise on each coordinate, in mean edges, above 0, at most 100.
+    /// Standard deviation of the noise on each coordinate, in mean edge lengths, above 0, at most 100.
     #[arg(long, value_name = "SIGMA", default_value_t = Noise::default().deviation)]
     #[arg(value_parser = quantity::number(f64::MIN_POSITIVE, 100.0))]
     pub noise_deviation: f64,
     /// Seed of the noise.
     #[arg(long, value_name = "N", default_value_t = Noise::default().seed)]
     pub seed: u64,
-    /// Unit of length inside the descriptors: the mean edge of the mesh, or that of the file.
+    /// Unit of length inside the descriptors: the mean edge length of the mesh, or the unit of the file.
     #[arg(long, value_name = "UNIT", default_value = "mean-edge", value_parser = units_parser())]
     pub units: Units,
-    /// How faces count in vertex normals.
+    /// How faces are weighted in vertex normals.
     #[arg(long, value_name = "HOW", default_value = NormalWeights::default().name())]
     #[arg(value_parser = normals_parser())]
     pub normals: NormalWeights,

@@ -9,7 +9,7 @@ use lwc::mesh::{Attribute, Attributes, Semantic};
 use lwc::render::{Shading, Style, Up, View};
 use std::path::PathBuf;
 
-/// Take a picture of a mesh or of a stream, at any level or of any beginning.
+/// Draw a picture of a mesh or of a stream, at any level or from its first bytes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -18,7 +18,7 @@ Examples:
   lwc render textured.lwc -o uv.png --bytes 20K --color-by uv
   lwc render model.lwc -o levels.png --montage --levels 0,4,8,12 --shading flat")]
 pub struct Render {
-    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, each also as .zst) or stream (.lwc).
+    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst) or stream (.lwc).
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
     /// Picture to write (.png), `-` for standard output.
@@ -46,7 +46,7 @@ pub struct Render {
     /// Levels of the montage, separated by commas. Default: all.
     #[arg(long, value_name = "K,…", value_delimiter = ',', requires = "montage")]
     pub levels: Vec<u32>,
-    /// Pictures in a row of the montage. Default: about as wide as high.
+    /// Pictures in a row of the montage, 1 to 64. Default: as many as make the montage about square.
     #[arg(long, value_name = "N", requires = "montage", value_parser = value_parser!(u32).range(1..=64))]
     pub columns: Option<u32>,
     #[command(flatten)]
@@ -90,25 +90,25 @@ impl AttributeKind {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Picture options")]
 pub struct Picture {
-    /// Pixels across and down, each 1 to 16384; of each picture in a montage.
+    /// Width and height in pixels, each 1 to 16384; in a montage, of each picture.
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = size)]
     pub size: [u32; 2],
-    /// front, back, left, right, top, bottom, or degrees to the right and up, e.g. 30,20.
+    /// Where to look from: front, back, left, right, top, bottom, or degrees to the right and up, e.g. 30,20.
     #[arg(long, value_name = "VIEW", default_value = "30,20", allow_hyphen_values = true)]
     pub view: View,
-    /// Axis of the model that points up: y or z.
+    /// Axis of the model that points up.
     #[arg(long, value_name = "AXIS", default_value = "y", value_parser = up_parser())]
     pub up: Up,
-    /// smooth or flat.
+    /// How triangles are shaded.
     #[arg(long, value_name = "HOW", default_value = "smooth", value_parser = shading_parser())]
     pub shading: Shading,
-    /// Draw the sides of the triangles.
+    /// Draw the edges of the triangles.
     #[arg(long)]
     pub wireframe: bool,
-    /// Draw outlines.
+    /// Draw the outlines of the surface.
     #[arg(long)]
     pub silhouettes: bool,
-    /// white, black, transparent or RRGGBB.
+    /// Colour of the background: white, black, transparent or RRGGBB.
     #[arg(long, value_name = "COLOUR", default_value = "white", value_parser = background)]
     pub background: [u8; 4],
     /// Colour of the surface, RRGGBB. Default: a light blue-grey.
@@ -138,8 +138,8 @@ impl Picture {
 /// How values become colours.
 #[derive(Debug, clap::Args)]
 pub struct HeatArgs {
-    /// Percent of the values, at either end, that get the colour of the end, 0 to 50: isolated maxima
-    /// otherwise leave one colour for all the rest.
+    /// Percent of the values at either end that share the colour of that end, 0 to 50. With 0, a few extreme values
+    /// can leave one colour for all others.
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = quantity::number(0.0, 50.0))]
     pub clip: f64,
 }
