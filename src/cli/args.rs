@@ -91,7 +91,7 @@ pub struct Encode {
     pub partition: Partition,
     /// What the balanced partition aims at.
     ///
-    /// - size: the smallest file; the descriptor is not used, and --levels auto leaves out the levels where that is smaller
+    /// - size: the smallest file; no vertex is kept for its saliency, and --levels auto leaves out the levels where that is smaller
     /// - balanced: the beginning of a file shows nearly as good a mesh as with prefix, and the file is smaller
     /// - prefix: the beginning of a file shows the best mesh
     #[arg(long, value_name = "AIM", verbatim_doc_comment)]

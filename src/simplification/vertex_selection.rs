@@ -8,7 +8,7 @@ use rayon::prelude::*;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Optimize {
-    /// The smallest whole file. No vertex is protected, so the descriptor has no say; and where that is smaller, there are no
+    /// The smallest whole file. No vertex is kept for its saliency; and where that is smaller, there are no
     /// levels, unless their number is given.
     Size,
     /// Prefixes nearly as good as they get, for a file a little larger. The default.
