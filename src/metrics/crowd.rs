@@ -6,6 +6,7 @@
 //! cost about n √m looks. Most looks are at two planes: a triangle lies in its own, and beyond the one through its point nearest
 //! to any place and across the way there.
 
+use super::nearest::bounds;
 use crate::mesh::triangle::{nearest_point, squared_distance};
 use glam::DVec3;
 
@@ -133,7 +134,7 @@ impl<'a> Crowd<'a> {
 
     /// `near`: those of the candidates that count.
     fn find_among(&self, points: &mut [Waiting], seen: &Seen, near: &[u32], depth: usize, noise: f64) {
-        let Some((low, high)) = bounds(points) else { return };
+        let (low, high) = bounds(points.iter().map(|p| p.point));
         let centre = 0.5 * (low + high);
         let radius = points.iter().map(|p| p.point.distance_squared(centre)).fold(0.0, f64::max).sqrt();
         let near = self.near(centre, radius, seen, near);
@@ -230,11 +231,6 @@ impl<'a> Crowd<'a> {
         }
         least
     }
-}
-
-fn bounds(points: &[Waiting]) -> Option<(DVec3, DVec3)> {
-    let first = points.first()?.point;
-    Some(points.iter().fold((first, first), |(low, high), p| (low.min(p.point), high.max(p.point))))
 }
 
 #[cfg(test)]

@@ -116,11 +116,15 @@ fn num_left(count: usize) -> usize {
     count.div_ceil(LEAF_TRIANGLES) / 2 * LEAF_TRIANGLES
 }
 
+/// The least and the greatest coordinates of some points.
+pub(super) fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    points.fold(none, |(low, high), p| (low.min(p), high.max(p)))
+}
+
 /// Sorts `triangles`, which begin at `begin` of all, into the leaves of the tree in `nodes`.
 fn build(triangles: &mut [[DVec3; 3]], nodes: &mut [Node], begin: usize) {
-    let bounds = |low: DVec3, high: DVec3, p: DVec3| (low.min(p), high.max(p));
-    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = triangles.as_flattened().iter().fold(none, |(low, high), &p| bounds(low, high, p));
+    let (low, high) = bounds(triangles.as_flattened().iter().copied());
     let count = triangles.len();
     nodes[0] = Node { low, high, turned: None, begin: begin as u32, count: count as u32 };
     if count <= LEAF_TRIANGLES {
@@ -129,7 +133,7 @@ fn build(triangles: &mut [[DVec3; 3]], nodes: &mut [Node], begin: usize) {
     }
     // Three times the centre of a triangle serves as well as the centre.
     let centre = |t: &[DVec3; 3]| t[0] + t[1] + t[2];
-    let (first, last) = triangles.iter().map(centre).fold(none, |(low, high), p| bounds(low, high, p));
+    let (first, last) = bounds(triangles.iter().map(centre));
     let axis = (last - first).max_position();
     let num_left = num_left(count);
     triangles.select_nth_unstable_by(num_left, |s, t| centre(s)[axis].total_cmp(&centre(t)[axis]));

@@ -1,6 +1,7 @@
 //! Boxes turned as the triangles within: long thin ones that lie across the axes, and large ones side by side as the leaves
 //! of a book, fill little of a box along the axes (Gottschalk, Lin and Manocha, *OBBTree*, 1996).
 
+use super::nearest::bounds;
 use glam::{DMat3, DVec3};
 
 /// Coordinates are at most 2: rounding moves a turned one by less.
@@ -37,9 +38,7 @@ impl OrientedBox {
     }
 
     fn along(turn: DMat3, triangles: &[[DVec3; 3]]) -> Self {
-        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let turned = triangles.as_flattened().iter().map(|&p| turn * p);
-        let (low, high) = turned.fold(none, |(low, high), p| (low.min(p), high.max(p)));
+        let (low, high) = bounds(triangles.as_flattened().iter().map(|&p| turn * p));
         Self { turn, low: low - SLACK, high: high + SLACK }
     }
 
@@ -85,9 +84,7 @@ mod tests {
         };
         let is_worthwhile = |shape: &dyn Fn(i32) -> [DVec3; 3]| {
             let triangles: Vec<_> = (0..4).map(shape).collect();
-            let corners = triangles.as_flattened();
-            let low = corners.iter().fold(DVec3::INFINITY, |low, &p| low.min(p));
-            let high = corners.iter().fold(DVec3::NEG_INFINITY, |high, &p| high.max(p));
+            let (low, high) = bounds(triangles.as_flattened().iter().copied());
             OrientedBox::around(&triangles, low, high).is_some()
         };
         assert!(is_worthwhile(&leaf));
