@@ -49,7 +49,7 @@ pub(crate) mod kind {
     pub(crate) const MATERIALS: u8 = b'm';
     /// Coordinates bit for bit.
     pub(crate) const EXACT: u8 = b'x';
-    /// Values of attributes bit for bit, and those of what lies loose.
+    /// Values of attributes bit for bit, and those of isolated vertices and degenerate faces.
     pub(crate) const VALUES: u8 = b'v';
     /// Order of the file.
     pub(crate) const ORDER: u8 = b'o';

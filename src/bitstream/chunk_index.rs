@@ -6,7 +6,7 @@ use crate::util::bytes::Reader;
 #[cfg(any(feature = "encoder", test))]
 use crate::util::bytes::write_varint;
 
-/// Most chunks behind the last pass.
+/// Most chunks after the last pass.
 const MAX_TRAILING: usize = 16;
 
 /// Chunks refer to those of earlier stages: to what lies loose, then the order to all. Others refer to none, and stand
@@ -25,7 +25,7 @@ fn stage(kind: u8) -> Option<u8> {
 pub(crate) struct ChunkIndex {
     /// Passes with glue behind them, ascending, and the bytes of its payload.
     pub(crate) glue: Vec<(u32, u32)>,
-    /// Kinds of the chunks behind the last pass, in order, and the bytes of their payloads.
+    /// Kinds of the chunks after the last pass, in order, and the bytes of their payloads.
     pub(crate) trailing: Vec<(u8, u32)>,
 }
 

@@ -329,7 +329,7 @@ impl Extras {
         Ok(())
     }
 
-    /// Takes values of attributes: exact ones, and those of what lies loose.
+    /// Takes values of attributes: exact ones, and those of isolated vertices and degenerate faces.
     fn read_values(&mut self, chunk: Beside, attributes: &AttributeDecoder) -> Result<(), Refused> {
         let Beside { payload, mesh, .. } = chunk;
         let triangles = &mesh.surface.triangles;

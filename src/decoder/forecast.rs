@@ -32,7 +32,7 @@ pub(super) fn check(info: &StreamInfo, declared: &Declarations, limits: &Limits)
     Ok(work)
 }
 
-/// Units of a chunk behind the last pass, which left a mesh of `finest`; without what lies loose.
+/// Units of a chunk after the last pass, which left a mesh of `finest`; without what lies loose.
 pub(crate) fn of_trailing(kind: TrailingKind, finest: Counts, declared: &Declarations) -> u64 {
     match kind {
         TrailingKind::Exact => cost::exact(finest),

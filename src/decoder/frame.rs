@@ -58,7 +58,7 @@ impl AttributeInfo {
     }
 }
 
-/// What a chunk behind the last pass holds.
+/// What a chunk after the last pass holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TrailingKind {
@@ -66,7 +66,7 @@ pub enum TrailingKind {
     Loose,
     /// The coordinates bit for bit.
     Exact,
-    /// Values of attributes bit for bit, and those of what lies loose.
+    /// Values of attributes bit for bit, and those of isolated vertices and degenerate faces.
     Values,
     /// The order of vertices and triangles.
     Order,
@@ -101,7 +101,7 @@ impl TrailingKind {
     }
 }
 
-/// A chunk behind the last pass.
+/// A chunk after the last pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrailingInfo {
     /// What is in it.

@@ -45,9 +45,9 @@ pub struct EncodeOptions {
     /// Keep triangles that name a vertex twice, and the vertices they name. Default false: they are dropped
     /// and counted.
     pub keep_degenerate: bool,
-    /// Keep all coordinates and values of attributes bit for bit, behind the last pass. Default false.
+    /// Keep all coordinates and values of attributes bit for bit, after the last pass. Default false.
     pub lossless: bool,
-    /// Keep the order of vertices and triangles and the first corner of each, behind the last pass. Default
+    /// Keep the order of vertices and triangles and the first corner of each, after the last pass. Default
     /// false.
     pub keep_order: bool,
     /// How the passes are coded; `None`: max where only the size of the file counts ([`Optimize::Size`]), else small.

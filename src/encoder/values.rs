@@ -1,4 +1,4 @@
-//! Values of attributes bit for bit, and those of what lies loose.
+//! Values of attributes bit for bit, and those of isolated vertices and degenerate faces.
 
 use super::attributes::{Quantised, QuantisedAttribute};
 use super::expect_sound;

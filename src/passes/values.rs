@@ -1,4 +1,4 @@
-//! Values of attributes bit for bit, and those of what lies loose (`format/SPEC.md`, section 7.12).
+//! Values of attributes bit for bit, and those of isolated vertices and degenerate faces (`format/SPEC.md`, section 7.12).
 
 use super::attribute::declaration::bits_of;
 use super::attribute::octahedron::Octahedron;

@@ -24,7 +24,7 @@ use variant::Variant;
 #[derive(Debug, Parser)]
 #[command(name = "lwc-compare")]
 pub struct Args {
-    /// Meshes, or folders of meshes (.obj .ply .stl, each also as .zst).
+    /// Meshes, or folders of meshes (.obj .ply .stl, plain or compressed as .zst).
     #[arg(value_name = "MESH", required = true)]
     inputs: Vec<PathBuf>,
     /// Folder for table.md and the charts; it is made if it is not there.
