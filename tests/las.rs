@@ -173,10 +173,25 @@ fn refusals_name_the_byte_and_the_cause() {
 
 /// The same file compressed, as versions 1 to 3 of the compressor do it.
 fn laz(format: u8, points: &[Point]) -> Vec<u8> {
+    laz_in_chunks(format, points, Chunks::OfPoints(50_000))
+}
+
+/// The points of a chunk: one number for all, or several in turn.
+#[derive(Clone, Copy, Debug)]
+enum Chunks {
+    OfPoints(u32),
+    OfSeveralSizes(&'static [usize]),
+}
+
+fn laz_in_chunks(format: u8, points: &[Point], chunks: Chunks) -> Vec<u8> {
     let plain = las(format, points);
     let data_offset = u32::from_le_bytes(plain[96..100].try_into().unwrap()) as usize;
     let items = laz::LazItemRecordBuilder::default_for_point_format_id(format, 0).unwrap();
-    let vlr = laz::LazVlr::from_laz_items(items);
+    let builder = laz::LazVlrBuilder::new(items);
+    let vlr = match chunks {
+        Chunks::OfPoints(size) => builder.with_fixed_chunk_size(size).build(),
+        Chunks::OfSeveralSizes(_) => builder.with_variable_chunk_size().build(),
+    };
     let mut data = std::io::Cursor::new(Vec::new());
     vlr.write_to(&mut data).unwrap();
     let data = data.into_inner();
@@ -193,7 +208,18 @@ fn laz(format: u8, points: &[Point]) -> Vec<u8> {
     let mut out = std::io::Cursor::new(bytes);
     out.set_position(out.get_ref().len() as u64);
     let mut compressor = laz::LasZipCompressor::new(out, vlr).unwrap();
-    compressor.compress_many(&plain[data_offset..]).unwrap();
+    let Chunks::OfSeveralSizes(sizes) = chunks else {
+        compressor.compress_many(&plain[data_offset..]).unwrap();
+        compressor.done().unwrap();
+        return compressor.into_inner().into_inner();
+    };
+    let mut records = plain[data_offset..].chunks(usize::from(u16::from_le_bytes([plain[105], plain[106]])));
+    for &size in sizes {
+        for record in records.by_ref().take(size) {
+            compressor.compress_one(record).unwrap();
+        }
+        compressor.finish_current_chunk().unwrap();
+    }
     compressor.done().unwrap();
     compressor.into_inner().into_inner()
 }
@@ -206,6 +232,22 @@ fn compressed_points_are_the_same() {
             io::read_bytes(&compressed, Format::Laz).unwrap_or_else(|e| panic!("format {format}: {e}"));
         assert_eq!(file, read(&las(format, &SQUARE)).unwrap(), "format {format}");
     }
+}
+
+#[test]
+fn chunks_of_all_sizes_are_read() {
+    let grid: Vec<Point> = (0..300).map(|k| ([k % 17 * 90, k / 17 * 110, k % 40], 1, 1, 2)).collect();
+    for format in [0, 1, 2, 3, 6, 7, 8] {
+        let several = Chunks::OfSeveralSizes(&[1, 100, 7, 192]);
+        for chunks in [Chunks::OfPoints(1), Chunks::OfPoints(7), Chunks::OfPoints(300), several] {
+            let file = io::read_bytes(&laz_in_chunks(format, &grid, chunks), Format::Laz);
+            let file = file.unwrap_or_else(|e| panic!("format {format}, {chunks:?}: {e}"));
+            assert_eq!(file, read(&las(format, &grid)).unwrap(), "format {format}, {chunks:?}");
+        }
+    }
+    let too_few = laz_in_chunks(1, &grid, Chunks::OfSeveralSizes(&[100, 7]));
+    let error = read(&too_few).expect_err("accepted").to_string();
+    assert!(error.contains("the chunks have fewer points than the header says"), "{error}");
 }
 
 /// The same file as LASzip before 2011 wrote it: one chunk without a table, and any number for its size.
@@ -237,7 +279,7 @@ fn points_without_chunks_are_read() {
 /// Chunks of several sizes, and no chunk in the table: `laz` looks for the first and panics.
 #[test]
 fn a_panic_of_the_decompressor_is_an_error() {
-    let mut bytes = laz(3, &SQUARE);
+    let mut bytes = laz(7, &SQUARE);
     let start = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
     let table = u64::from_le_bytes(bytes[start..start + 8].try_into().unwrap()) as usize;
     bytes[table + 4..table + 8].copy_from_slice(&0u32.to_le_bytes());

@@ -4,6 +4,9 @@
 //! counter-clockwise from there. Overhangs are not for a surface like this: of several points above each
 //! other one remains.
 
+mod compressed;
+mod gps_time;
+mod header;
 mod points;
 mod quiet;
 mod thin;
