@@ -180,8 +180,12 @@ fn unpack_point_wise(
     let mut num_left = 0;
     let fill = |piece: &mut [u8]| {
         for record in piece.chunks_exact_mut(header.record_bytes) {
-            while num_left == 0 {
-                num_left = sizes.next().ok_or("the chunks have fewer points than the header says")?;
+            if num_left == 0 {
+                // A table may have any number of empty chunks, and models take a while to make.
+                num_left = sizes
+                    .find(|&size| size > 0)
+                    .ok_or("the chunks have fewer points than the header says")?;
+                check_first_record(header, bytes, unpacker.get().position())?;
                 unpacker.reset();
                 add_fields(&mut unpacker, laz.record.items()).map_err(|error| error.to_string())?;
             }
@@ -191,6 +195,15 @@ fn unpack_point_wise(
         Ok(())
     };
     pieces.each(fill, take)
+}
+
+/// A chunk begins with a point as it is. Without it no models are made, which take 2 kB for each byte of a point.
+fn check_first_record(header: &Header, bytes: &[u8], at: u64) -> Result<(), String> {
+    let num_left = (bytes.len() as u64).saturating_sub(at);
+    if num_left < header.record_bytes as u64 {
+        return Err(format!("the file ends in the first point of a chunk, at byte {at}"));
+    }
+    Ok(())
 }
 
 /// The numbers of points in the chunks.
