@@ -77,7 +77,7 @@ PARTS = {
         ("src/simplification/bucket_queue.rs", r"const WEIGHT: f64 = 0\.7;", "const WEIGHT: f64 = 0.0;"),
     ],
     "Schedule: precision that follows the error": [
-        ("src/encoder/schedule.rs", r"let base_precision = if num_levels > 0 .*;", "let base_precision = precision;"),
+        ("src/encoder/schedule.rs", r"let base_bits = if num_levels > 0 .*;", "let base_bits = quantization_bits;"),
     ],
     "Choice: errors against the original surface": [
         (THINNING, r"mut errors: Vec<f64>,", "errors: Vec<f64>,"),

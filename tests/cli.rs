@@ -410,7 +410,7 @@ fn encode_writes_beside_the_model_and_sums_up() {
     let workshop = Workshop::new();
     let (stdout, stderr) = workshop.ok("encode ball.ply --verify");
     let bytes = fs::metadata(workshop.path("ball.lwc")).unwrap().len();
-    assert!(stdout.starts_with("ball.lwc: 642 vertices, 1280 faces, "), "{stdout}");
+    assert!(stdout.starts_with("ball.lwc: 642 vertices, 1280 triangles, "), "{stdout}");
     assert!(stdout.contains(&format!("{bytes} bytes, ")) && stdout.contains("verified"), "{stdout}");
     assert_eq!(stderr, "");
 
@@ -430,7 +430,7 @@ fn every_option_reaches_the_stream() {
     let info = workshop.json("info a.lwc --json");
     for (key, expected) in [
         ("descriptor", Value::from("shape-index")),
-        ("precision", 10.into()),
+        ("quantization_bits", 10.into()),
         ("levels", 3.into()),
         ("rings", 2.into()),
         ("radius", 2.5.into()),
@@ -453,12 +453,12 @@ fn encode_reports_as_json() {
     workshop.put("fin.obj", &non_manifold_fin());
     let report = workshop.json("encode fin.obj --json --verify");
     assert_eq!(report["bytes"], fs::metadata(workshop.path("fin.lwc")).unwrap().len());
-    assert_eq!((&report["input_vertices"], &report["input_faces"]), (&50.into(), &73.into()));
+    assert_eq!((&report["input_vertices"], &report["input_triangles"]), (&50.into(), &73.into()));
     assert_eq!((&report["output"], &report["verified"]), (&"fin.lwc".into(), &true.into()));
     assert!(report["repeated_vertices"].as_u64() > Some(0));
     let passes = report["passes"].as_array().unwrap();
     assert_eq!(passes.last().unwrap()["end"], report["bytes"]);
-    assert_eq!(passes.last().unwrap()["faces"], report["faces"]);
+    assert_eq!(passes.last().unwrap()["triangles"], report["triangles"]);
 }
 
 #[test]
@@ -471,8 +471,8 @@ fn what_is_dropped_is_counted() {
     for warning in [
         "1 polygon cut into triangles",
         "1 face of fewer than three corners left out",
-        "1 degenerate face dropped",
-        "1 vertex without faces dropped",
+        "1 degenerate triangle dropped",
+        "1 vertex without triangles dropped",
     ] {
         assert!(stderr.contains(&format!("lwc: warning: odd.obj: {warning}")), "{warning}: {stderr}");
     }
@@ -505,7 +505,7 @@ fn nothing_is_dropped_if_nobody_wants_that() {
     workshop.ok(&format!("encode odd.obj {flags} -o small.lwc"));
     assert!(
         ["12", "15", "18"]
-            .contains(&workshop.json("info small.lwc --json")["precision"].to_string().as_str())
+            .contains(&workshop.json("info small.lwc --json")["quantization_bits"].to_string().as_str())
     );
 }
 
@@ -586,11 +586,11 @@ fn gltf_comes_in_and_goes_out() {
     fs::write(workshop.path("two.gltf"), document.to_string()).unwrap();
     let merged = workshop.json("encode two.gltf --merge --json --quiet");
     let single = workshop.json("encode ball.gltf --json --quiet");
-    assert_eq!(merged["faces"].as_u64(), single["faces"].as_u64().map(|faces| 2 * faces));
+    assert_eq!(merged["triangles"].as_u64(), single["triangles"].as_u64().map(|count| 2 * count));
 
     // In a stream it is there once, and comes back in both places.
     let scene = workshop.json("encode two.gltf --json --quiet --verify");
-    assert_eq!(scene["faces"], single["faces"]);
+    assert_eq!(scene["triangles"], single["triangles"]);
     workshop.ok("decode two.lwc -o back.gltf");
     let back: Value = serde_json::from_slice(&fs::read(workshop.path("back.gltf")).unwrap()).unwrap();
     assert_eq!((back["meshes"].as_array().unwrap().len(), back["nodes"].as_array().unwrap().len()), (1, 2));
@@ -649,7 +649,7 @@ fn the_whole_stream_is_the_mesh_on_the_grid() {
     let workshop = Workshop::new();
     workshop.ball_stream();
     let (stdout, stderr) = workshop.ok("decode ball.lwc");
-    assert!(stdout.starts_with("ball.decoded.obj: 642 vertices, 1280 faces, level "), "{stdout}");
+    assert!(stdout.starts_with("ball.decoded.obj: 642 vertices, 1280 triangles, level "), "{stdout}");
     assert_eq!(stderr, "");
     let decoded = workshop.mesh("ball.decoded.obj");
     assert_eq!((decoded.num_vertices(), decoded.num_triangles()), (642, 1280));

@@ -188,7 +188,7 @@ fn describe_makes_pictures_and_coloured_meshes() {
     assert_eq!(file.mesh, io::read(folder.path("ball.ply")).unwrap().mesh);
     let colours = file.attributes.find(Semantic::Color(0)).unwrap();
     assert_eq!((colours.domain, colours.num_components), (Domain::Vertex, 3));
-    assert_eq!(colours.num_rows(), file.mesh.num_vertices());
+    assert_eq!(colours.num_entries(), file.mesh.num_vertices());
     let output = folder.run("describe ball.ply -o heat.txt");
     assert_eq!(output.status.code(), Some(2));
 }

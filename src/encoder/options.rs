@@ -22,20 +22,20 @@ pub struct EncodeOptions {
     /// Attributes that the descriptor sees beside positions, if it is pca or pca-qem. Default none.
     pub descriptor_attributes: Vec<FeatureChoice>,
     /// Bits per coordinate, 1 to 30. Default 12.
-    pub quantization: u32,
+    pub quantization_bits: u32,
     /// Number of levels above the base mesh; `None` goes on until the base is small. Default `None`.
     pub levels: Option<u32>,
-    /// How odd vertices are chosen and removed. Default balanced.
+    /// How odd vertices are chosen and removed. Default weighted error.
     pub partition: Partition,
-    /// What the balanced partition aims at. Default balanced.
+    /// What the partition by weighted error aims at. Default balanced.
     pub optimize: Optimize,
-    /// Grid steps to the mean edge of a level, from which its precision follows; `None` follows the
+    /// Grid steps to the mean edge of a level, from which its quantization bits follow; `None` follows the
     /// error of each level instead, which makes better prefixes. Default `None`.
     pub steps_per_edge: Option<f64>,
     /// Bits of each of the two coordinates of a normal on the octahedron, 2 to 30. Default 8.
     pub normal_bits: u32,
     /// Bits of a texture coordinate, 1 to 30. Default 10.
-    pub uv_bits: u32,
+    pub texcoord_bits: u32,
     /// Bits of a component of a colour, 1 to 30. Default 8: colours of 8 bits are kept exactly.
     pub color_bits: u32,
     /// Bits of a component of any other attribute, 1 to 30. Integers that fit are kept exactly. Default 12.
@@ -53,8 +53,8 @@ pub struct EncodeOptions {
     /// How the passes are coded; `None`: max where only the size of the file counts ([`Optimize::Size`]), else small.
     /// Default `None`.
     pub profile: Option<Profile>,
-    /// Time that may be spent, 0 to 9. Below [`LOW_EFFORT`](Self::LOW_EFFORT) the descriptor has no say in the balanced
-    /// partition, which takes it a third of the time less; from [`HIGH_EFFORT`](Self::HIGH_EFFORT) on several ways are
+    /// Time that may be spent, 0 to 9. Below [`LOW_EFFORT`](Self::LOW_EFFORT) the partition by weighted error
+    /// leaves the descriptor out, which takes a third of the time less; from [`HIGH_EFFORT`](Self::HIGH_EFFORT) on several ways are
     /// tried where only the size of the file counts ([`Optimize::Size`]), with 9 all of them. Default 5.
     pub effort: u32,
 }
@@ -66,13 +66,13 @@ impl Default for EncodeOptions {
             window: Window::default(),
             growth: 1.5,
             descriptor_attributes: Vec::new(),
-            quantization: 12,
+            quantization_bits: 12,
             levels: None,
             partition: Partition::default(),
             optimize: Optimize::default(),
             steps_per_edge: None,
             normal_bits: 8,
-            uv_bits: 10,
+            texcoord_bits: 10,
             color_bits: 8,
             generic_bits: 12,
             keep_isolated: false,
@@ -86,7 +86,7 @@ impl Default for EncodeOptions {
 }
 
 impl EncodeOptions {
-    /// Below this effort the descriptor has no say in the balanced partition.
+    /// Below this effort the partition by weighted error leaves the descriptor out.
     pub const LOW_EFFORT: u32 = 3;
     /// From this effort on several ways are tried.
     pub const HIGH_EFFORT: u32 = 7;
@@ -103,7 +103,7 @@ impl EncodeOptions {
     pub(super) fn hierarchies_tried(&self) -> Vec<Attempt> {
         let usual = Attempt { levels: self.levels, max_valence: None };
         let mut tried = vec![usual];
-        let is_for_size = self.optimize == Optimize::Size && self.partition == Partition::Balanced;
+        let is_for_size = self.optimize == Optimize::Size && self.partition == Partition::WeightedError;
         if is_for_size && self.effort >= Self::HIGHEST_EFFORT {
             tried.extend([5, 7].map(|valence| Attempt { max_valence: Some(valence), ..usual }));
         }
@@ -115,7 +115,7 @@ impl EncodeOptions {
         tried
     }
 
-    /// Precisions that are tried, as grid steps to the mean edge; `None` follows the errors.
+    /// Quantization bits that are tried, as grid steps to the mean edge; `None` follows the errors.
     pub(super) fn steps_tried(&self) -> &'static [Option<f64>] {
         const AT_ONCE: Option<f64> = Some(f64::MAX);
         match (self.optimize, self.effort) {
@@ -128,12 +128,12 @@ impl EncodeOptions {
 
     pub(super) fn check(&self) -> Result<(), EncodeError> {
         let fail = |option, value: String, allowed| Err(EncodeError::Option { option, value, allowed });
-        if !(1..=30).contains(&self.quantization) {
-            return fail("quantization", self.quantization.to_string(), "1 to 30 bits");
+        if !(1..=30).contains(&self.quantization_bits) {
+            return fail("quantization bits", self.quantization_bits.to_string(), "1 to 30");
         }
         for (option, bits, least) in [
             ("normal bits", self.normal_bits, 2),
-            ("uv bits", self.uv_bits, 1),
+            ("texcoord bits", self.texcoord_bits, 1),
             ("color bits", self.color_bits, 1),
             ("generic bits", self.generic_bits, 1),
         ] {

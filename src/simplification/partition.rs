@@ -22,7 +22,7 @@ pub enum Partition {
     /// stay, the cost of coding which of the others go first; holes are closed by what lies close to
     /// the surface and is cheap to code ([`Optimize`] weighs the two). The default.
     #[default]
-    Balanced,
+    WeightedError,
     /// Algorithm 1 to the letter: ascending descriptor, half-edge collapse along the shortest legal
     /// edge.
     Algorithm1,
@@ -30,12 +30,12 @@ pub enum Partition {
 
 impl Partition {
     /// Every partition, in the order of their names in help texts.
-    pub const ALL: [Partition; 2] = [Partition::Balanced, Partition::Algorithm1];
+    pub const ALL: [Partition; 2] = [Partition::WeightedError, Partition::Algorithm1];
 
     /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Partition::Balanced => "balanced",
+            Partition::WeightedError => "weighted-error",
             Partition::Algorithm1 => "algorithm1",
         }
     }
@@ -101,7 +101,7 @@ pub(crate) fn remove_level(
 pub(crate) enum Ranked {
     /// Algorithm 1: the descriptor, of each vertex.
     ByScore(Vec<f64>),
-    /// The balanced partition.
+    /// The partition by weighted error.
     BySaliency { saliency: Saliency, rings: Rings },
 }
 

@@ -4,7 +4,7 @@
 use super::SurfaceEditor;
 use rayon::prelude::*;
 
-/// What the balanced partition gives up for what.
+/// What the partition by weighted error gives up for what.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Optimize {

@@ -40,7 +40,7 @@ const drawnPixels = (page) =>
 function assertGrows(history) {
   for (let i = 1; i < history.length; i += 1) {
     assert.ok(history[i].vertices >= history[i - 1].vertices, 'vertices only grow');
-    assert.ok(history[i].faces >= history[i - 1].faces, 'triangles only grow');
+    assert.ok(history[i].triangles >= history[i - 1].triangles, 'triangles only grow');
     assert.ok(history[i].bytes >= history[i - 1].bytes);
   }
 }
@@ -94,7 +94,7 @@ test('a connection that stays cut leaves the mesh of what has come', async (t) =
   const { history, drawn } = await record(page);
   const last = history.at(-1);
   assert.ok(last.vertices > 100 && last.bytes <= third + (1 << 14));
-  assert.equal(drawn, 3 * last.faces);
+  assert.equal(drawn, 3 * last.triangles);
   assert.ok((await drawnPixels(page)) > 0.02);
   const { indices } = await arrays(page);
   assert.ok(indices.every((v) => v < last.vertices));

@@ -114,9 +114,9 @@ export function record(page) {
 export async function arrays(page) {
   const { positions, indices } = await page.evaluate(() => {
     const { geometry, shown } = globalThis.lwc;
-    const { vertices, faces } = shown.pass;
+    const { vertices, triangles } = shown.pass;
     const positions = geometry.getAttribute('position').array.slice(0, 3 * vertices);
-    const indices = geometry.index.array.slice(0, 3 * faces);
+    const indices = geometry.index.array.slice(0, 3 * triangles);
     const text = (array) => {
       const bytes = new Uint8Array(array.buffer);
       let result = '';

@@ -82,9 +82,9 @@ export interface PassInfo {
   kind: PassKind;
   level: number;
   /** Bits per coordinate. */
-  precision: number;
+  quantizationBits: number;
   vertices: number;
-  faces: number;
+  triangles: number;
   /** Bytes of its chunk. */
   bytes: number;
   /** Bytes of the stream up to the end of the pass. */
@@ -94,7 +94,7 @@ export interface PassInfo {
 /** What a stream says of itself before its first pass. */
 export interface StreamInfo {
   /** Bits per coordinate of the finest mesh. */
-  precision: number;
+  quantizationBits: number;
   /** Smallest corner of the grid, model units. */
   origin: [number, number, number];
   /** Side of the grid, model units. */
@@ -332,7 +332,7 @@ export class Decoder {
     return this.#done;
   }
 
-  /** The last pass applied: level, precision and counts of the mesh at hand. */
+  /** The last pass applied: level, quantization bits and counts of the mesh at hand. */
   get pass(): PassInfo | undefined {
     return this.#done > 0 ? this.info?.passes[this.#done - 1] : undefined;
   }
@@ -362,12 +362,12 @@ export class Decoder {
 
   /** Vertex indices of the triangles, m × 3, counter-clockwise. */
   get indices(): Uint32Array {
-    return this.#view(Uint32Array, this.#wasm.triangles(this.#handle), this.pass?.faces ?? 0);
+    return this.#view(Uint32Array, this.#wasm.triangles(this.#handle), this.pass?.triangles ?? 0);
   }
 
   /**
    * A guess of the RMS distance to the finest mesh, model units, from how much the surface bends and from
-   * the precision; with the option `shade`.
+   * the quantization bits; with the option `shade`.
    */
   get expectedError(): number {
     return this.#wasm.expected_error(this.#handle);
@@ -384,12 +384,12 @@ export class Decoder {
    */
   draw(): Drawing {
     const [wasm, handle] = [this.#wasm as Required<Exports>, this.#handle];
-    const [vertices, faces, ends, colors, uvs, normals] = this.#words(wasm.draw(handle), 6) as unknown as number[];
+    const [vertices, triangles, ends, colors, uvs, normals] = this.#words(wasm.draw(handle), 6) as unknown as number[];
     const view = <T>(type: Typed<T>, at: number, length: number): T =>
       new type(wasm.memory.buffer, length > 0 ? at : 0, length);
     return {
       positions: view(Float32Array, wasm.drawn_positions(handle), 3 * vertices!),
-      indices: view(Uint32Array, wasm.drawn_triangles(handle), 3 * faces!),
+      indices: view(Uint32Array, wasm.drawn_triangles(handle), 3 * triangles!),
       normals: normals ? view(Float32Array, wasm.drawn_normals(handle), 3 * normals) : undefined,
       colors: colors ? view(Uint16Array, wasm.drawn_colors(handle), 4 * colors) : undefined,
       uvs: uvs ? view(Float32Array, wasm.drawn_uvs(handle), 2 * uvs) : undefined,
@@ -445,15 +445,15 @@ export class Decoder {
     const length = this.#wasm.info_length(this.#handle);
     if (length === 0) return undefined;
     const numbers = [...new Float64Array(this.#wasm.memory.buffer, this.#wasm.info(this.#handle), length)];
-    const [precision, x, y, z, side, totalBytes] = numbers as [number, number, number, number, number, number];
+    const [quantizationBits, x, y, z, side, totalBytes] = numbers as [number, number, number, number, number, number];
     const passes: PassInfo[] = [];
     for (let i = 6; i < length; i += 7) {
-      const [kind, level, bits, vertices, faces, bytes, end] = numbers.slice(i, i + 7) as [
+      const [kind, level, bits, vertices, triangles, bytes, end] = numbers.slice(i, i + 7) as [
         number, number, number, number, number, number, number,
       ];
-      passes.push({ kind: KINDS[kind]!, level, precision: bits, vertices, faces, bytes, end });
+      passes.push({ kind: KINDS[kind]!, level, quantizationBits: bits, vertices, triangles, bytes, end });
     }
-    return { precision, origin: [x, y, z], side, totalBytes, finestLevel: passes.at(-1)?.level ?? 0, passes };
+    return { quantizationBits, origin: [x, y, z], side, totalBytes, finestLevel: passes.at(-1)?.level ?? 0, passes };
   }
 }
 

@@ -28,7 +28,7 @@ export class RefinedGeometry extends BufferGeometry {
   #index: BufferAttribute;
   #replaced = 0;
 
-  constructor(vertices: number, faces: number, hasNormals: boolean) {
+  constructor(vertices: number, triangles: number, hasNormals: boolean) {
     super();
     const attribute = (array: Float32Array | Uint32Array, size: number) => {
       const made = new BufferAttribute(array, size);
@@ -36,7 +36,7 @@ export class RefinedGeometry extends BufferGeometry {
       return made;
     };
     this.#position = attribute(new Float32Array(3 * vertices), 3);
-    this.#index = attribute(new Uint32Array(3 * faces), 1);
+    this.#index = attribute(new Uint32Array(3 * triangles), 1);
     this.setAttribute('position', this.#position);
     this.setIndex(this.#index);
     if (hasNormals) {
@@ -51,7 +51,7 @@ export class RefinedGeometry extends BufferGeometry {
   /** Buffers for the mesh of a stream, up to a level if one is given. */
   static of(info: StreamInfo, hasNormals: boolean, level = Infinity): RefinedGeometry {
     const last = info.passes.filter((pass) => pass.level <= level).at(-1)!;
-    return new RefinedGeometry(last.vertices, last.faces, hasNormals);
+    return new RefinedGeometry(last.vertices, last.triangles, hasNormals);
   }
 
   /** Grows whenever something was written: a page that draws on demand looks at it. */
@@ -114,7 +114,7 @@ export class RefinedGeometry extends BufferGeometry {
     }
     for (const { start, end } of union(written, UPLOAD_GAP)) mark(this.#index, 3 * start, 3 * (end - start));
 
-    this.setDrawRange(0, 3 * update.pass.faces);
+    this.setDrawRange(0, 3 * update.pass.triangles);
     this.#bound(update.box);
   }
 }

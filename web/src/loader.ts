@@ -21,7 +21,7 @@ export { SceneGroup } from './scene.js';
 /** How far a load is, when the mesh has just become finer. */
 export interface Refinement {
   info: StreamInfo;
-  /** The last pass applied: level, precision and counts of the mesh that is drawn. */
+  /** The last pass applied: level, quantization bits and counts of the mesh that is drawn. */
   pass: PassInfo;
   passesDone: number;
   isComplete: boolean;

@@ -171,7 +171,7 @@ function send(decoder: Decoder): void {
     rewrittenIndices,
     drawing: undefined,
   });
-  sent = { vertices: pass.vertices, triangles: pass.faces };
+  sent = { vertices: pass.vertices, triangles: pass.triangles };
   changes.clear();
 }
 

@@ -27,11 +27,11 @@ function lines(module, name) {
   decoder.feed(read(name));
   const found = [];
   for (let update = decoder.step(); update; update = decoder.step()) {
-    const { kind, level, precision, vertices, faces } = update.pass;
+    const { kind, level, quantizationBits, vertices, triangles } = update.pass;
     const checksum = decoder.checksum().toString(16).padStart(8, '0');
     assert.equal(decoder.positions.length, 3 * vertices);
-    assert.equal(decoder.indices.length, 3 * faces);
-    found.push([name, update.index, kind, level, precision, vertices, faces, checksum].join(' '));
+    assert.equal(decoder.indices.length, 3 * triangles);
+    found.push([name, update.index, kind, level, quantizationBits, vertices, triangles, checksum].join(' '));
   }
   assert.ok(decoder.isComplete);
   decoder.free();
@@ -89,10 +89,10 @@ test('the ranges of the updates name all that changed', () => {
 test('positions are the middles of the cells', () => {
   const decoder = new Decoder(wasm);
   decoder.push(read('torus.lwc'));
-  const { origin, side, precision } = decoder.info;
+  const { origin, side, quantizationBits } = decoder.info;
   const { positions, cells } = decoder;
   for (let i = 0; i < cells.length; i += 1) {
-    const expected = origin[i % 3] + (cells[i] / (2 ** precision - 1)) * side;
+    const expected = origin[i % 3] + (cells[i] / (2 ** quantizationBits - 1)) * side;
     assert.equal(positions[i], Math.fround(expected));
   }
   const relative = decode(wasm, read('utm-30-bits.lwc'), { relative: true });
@@ -173,9 +173,9 @@ test('errors have the kinds of the library and keep the last good mesh', () => {
   bytes[bytes.length - 1] ^= 1;
   const decoder = new Decoder(wasm);
   assert.throws(() => decoder.push(bytes), kind('Checksum'));
-  const { vertices, faces } = decoder.pass;
+  const { vertices, triangles } = decoder.pass;
   assert.ok(vertices > 0);
-  assert.equal(decoder.indices.length, 3 * faces);
+  assert.equal(decoder.indices.length, 3 * triangles);
   assert.ok(decoder.indices.every((v) => v < vertices));
   assert.throws(() => decoder.push(bytes), kind('Failed'));
   decoder.free();

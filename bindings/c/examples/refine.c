@@ -39,8 +39,8 @@ static LwcMesh *torus(void) {
     static uint8_t colours[VERTICES][3];
     for (int v = 0; v < VERTICES; v++)
         for (int k = 0; k < 3; k++) colours[v][k] = (uint8_t)(128 + 40 * positions[v][k]);
-    LwcAttribute colour = {.name = "colour", .kind = LWC_ATTRIBUTE_KIND_COLOR, .domain = LWC_ATTRIBUTE_DOMAIN_VERTEX,
-                           .scalar = LWC_ATTRIBUTE_TYPE_U8, .components = 3, .normalized = true, .num_rows = VERTICES};
+    LwcAttribute colour = {.name = "colour", .semantic = LWC_SEMANTIC_COLOR, .domain = LWC_ATTRIBUTE_DOMAIN_VERTEX,
+                           .component_type = LWC_COMPONENT_TYPE_U8, .num_components = 3, .normalized = true, .num_entries = VERTICES};
     check(lwc_mesh_add_attribute(mesh, &colour, colours, NULL), "colours");
     return mesh;
 }
@@ -62,7 +62,7 @@ int main(void) {
         LwcStatus status;
         while ((status = lwc_decoder_step(decoder, &changes)) == LWC_STATUS_OK) {
             printf("level %u at %u bits: %u vertices, %u triangles, from vertex %u on\n", changes.pass.level,
-                   changes.pass.precision, changes.pass.vertices, changes.pass.faces, changes.first_vertex);
+                   changes.pass.quantization_bits, changes.pass.vertices, changes.pass.triangles, changes.first_vertex);
         }
         if (status != LWC_STATUS_NOTHING_TO_DO) check(status, "step");
     }
@@ -75,7 +75,7 @@ int main(void) {
     check(lwc_decode(bytes, size, &coarse, &first), "decode");
     LwcAttribute colour;
     check(lwc_mesh_attribute(first, 0, &colour), "attribute");
-    printf("level 1 alone: %zu vertices, %zu rows of %s\n", lwc_mesh_num_vertices(first), colour.num_rows, colour.name);
+    printf("level 1 alone: %zu vertices, %zu rows of %s\n", lwc_mesh_num_vertices(first), colour.num_entries, colour.name);
     lwc_mesh_free(first);
 
     if (lwc_decode((const uint8_t *)"solid cube", 10, NULL, &first) != LWC_STATUS_NOT_A_STREAM) return 1;

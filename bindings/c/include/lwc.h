@@ -14,8 +14,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-// Row of an element that has no value.
-#define LWC_NO_ROW UINT32_MAX
+// Entry of an element that has no value.
+#define LWC_NO_ENTRY UINT32_MAX
 
 // How a call ended. The names are those of the errors of the Rust library.
 typedef enum LwcStatus {
@@ -64,22 +64,22 @@ typedef enum LwcStatus {
 } LwcStatus;
 
 // What the values mean.
-typedef enum LwcAttributeKind {
+typedef enum LwcSemantic {
   // Anything; the name says what.
-  LWC_ATTRIBUTE_KIND_GENERIC = 0,
+  LWC_SEMANTIC_GENERIC = 0,
   // Direction away from the surface, three components.
-  LWC_ATTRIBUTE_KIND_NORMAL = 1,
+  LWC_SEMANTIC_NORMAL = 1,
   // Place in a texture.
-  LWC_ATTRIBUTE_KIND_TEX_COORD = 2,
+  LWC_SEMANTIC_TEX_COORD = 2,
   // Red, green, blue and perhaps opacity.
-  LWC_ATTRIBUTE_KIND_COLOR = 3,
+  LWC_SEMANTIC_COLOR = 3,
   // Which material.
-  LWC_ATTRIBUTE_KIND_MATERIAL = 4,
+  LWC_SEMANTIC_MATERIAL = 4,
   // Which group of triangles.
-  LWC_ATTRIBUTE_KIND_GROUP = 5,
+  LWC_SEMANTIC_GROUP = 5,
   // Which object, or part of a scene.
-  LWC_ATTRIBUTE_KIND_OBJECT = 6,
-} LwcAttributeKind;
+  LWC_SEMANTIC_OBJECT = 6,
+} LwcSemantic;
 
 // What has a value.
 typedef enum LwcAttributeDomain {
@@ -92,18 +92,18 @@ typedef enum LwcAttributeDomain {
 } LwcAttributeDomain;
 
 // The type of the values.
-typedef enum LwcAttributeType {
-  LWC_ATTRIBUTE_TYPE_I8 = 0,
-  LWC_ATTRIBUTE_TYPE_U8 = 1,
-  LWC_ATTRIBUTE_TYPE_I16 = 2,
-  LWC_ATTRIBUTE_TYPE_U16 = 3,
-  LWC_ATTRIBUTE_TYPE_I32 = 4,
-  LWC_ATTRIBUTE_TYPE_U32 = 5,
-  LWC_ATTRIBUTE_TYPE_F32 = 6,
-  LWC_ATTRIBUTE_TYPE_F64 = 7,
+typedef enum LwcComponentType {
+  LWC_COMPONENT_TYPE_I8 = 0,
+  LWC_COMPONENT_TYPE_U8 = 1,
+  LWC_COMPONENT_TYPE_I16 = 2,
+  LWC_COMPONENT_TYPE_U16 = 3,
+  LWC_COMPONENT_TYPE_I32 = 4,
+  LWC_COMPONENT_TYPE_U32 = 5,
+  LWC_COMPONENT_TYPE_F32 = 6,
+  LWC_COMPONENT_TYPE_F64 = 7,
   // Strings, UTF-8, each ends in a zero.
-  LWC_ATTRIBUTE_TYPE_NAMES = 8,
-} LwcAttributeType;
+  LWC_COMPONENT_TYPE_NAMES = 8,
+} LwcComponentType;
 
 // Decodes a stream as it arrives.
 typedef struct LwcDecoder LwcDecoder;
@@ -118,9 +118,9 @@ typedef struct LwcMesh LwcMesh;
 typedef struct LwcEncodeOptions {
   // Name of the descriptor, such as "harris3d"; null for the default.
   const char *descriptor;
-  // Name of the partition, "balanced" or "algorithm1"; null for the default.
+  // Name of the partition, "weighted-error" or "algorithm1"; null for the default.
   const char *partition;
-  // What the balanced partition aims at, "size", "balanced" or "prefix"; null for the default.
+  // What the partition by weighted error aims at, "size", "balanced" or "prefix"; null for the default.
   const char *optimize;
   // Topological radius of the window, in edges.
   uint32_t rings;
@@ -129,7 +129,7 @@ typedef struct LwcEncodeOptions {
   // Factor of the radius from each level to the next coarser one.
   double growth;
   // Bits per coordinate, 1 to 30.
-  uint32_t quantization;
+  uint32_t quantization_bits;
   // Levels above the base mesh; negative: until the base mesh is small.
   int32_t levels;
   // Grid steps to the mean edge of a level; 0: by the error of each level.
@@ -137,7 +137,7 @@ typedef struct LwcEncodeOptions {
   // Bits of each of the two coordinates of a normal, 2 to 30.
   uint32_t normal_bits;
   // Bits of a texture coordinate, 1 to 30.
-  uint32_t uv_bits;
+  uint32_t texcoord_bits;
   // Bits of a component of a colour, 1 to 30.
   uint32_t color_bits;
   // Bits of a component of any other attribute, 1 to 30.
@@ -169,7 +169,7 @@ typedef struct LwcDecodeOptions {
   // Most units of work, each about a tenth of a microsecond; 0: in proportion to the bytes of the stream.
   uint64_t max_work;
   // Leave the vertices of coarse levels where they are in the finest mesh.
-  bool uncompensated;
+  bool no_shrinkage_compensation;
 } LwcDecodeOptions;
 
 // A pass, and the mesh that stands after it.
@@ -179,11 +179,11 @@ typedef struct LwcPass {
   // Level after the pass.
   uint32_t level;
   // Bits per coordinate after the pass.
-  uint32_t precision;
+  uint32_t quantization_bits;
   // Vertices after the pass.
   uint32_t vertices;
   // Triangles after the pass.
-  uint32_t faces;
+  uint32_t triangles;
   // Bytes of its chunk.
   uint64_t bytes;
   // Bytes of the stream up to the end of the pass.
@@ -204,24 +204,24 @@ typedef struct LwcChanges {
   size_t num_rewritten;
 } LwcChanges;
 
-// An attribute: a table of values, and which element has which row of it.
+// An attribute: a table of values, and which entry of it each element has.
 typedef struct LwcAttribute {
   // What the file calls it, UTF-8, ends in a zero.
   const char *name;
-  // An LwcAttributeKind.
-  uint32_t kind;
+  // An LwcSemantic.
+  uint32_t semantic;
   // Of texture coordinates and colours, which of several.
-  uint32_t set;
+  uint32_t set_index;
   // An LwcAttributeDomain.
   uint32_t domain;
-  // An LwcAttributeType.
-  uint32_t scalar;
-  // Values of a row, 1 to 16; 1 for names.
-  uint32_t components;
+  // An LwcComponentType.
+  uint32_t component_type;
+  // Components of an entry, 1 to 16; 1 for names.
+  uint32_t num_components;
   // Whether integers are fractions of the largest of their type.
   bool normalized;
-  // Rows of the table.
-  size_t num_rows;
+  // Entries of the table.
+  size_t num_entries;
 } LwcAttribute;
 
 #ifdef __cplusplus
@@ -401,17 +401,17 @@ enum LwcStatus lwc_decoder_pass(const struct LwcDecoder *decoder,
 // `decoder` was handed out by this library and has not been freed.
 bool lwc_decoder_is_complete(const struct LwcDecoder *decoder);
 
-// Gives a mesh an attribute: a copy of `values`, num_rows × components of the type of `what` (for names pointers to
-// strings), and of `rows`, for each element the row it has or LWC_NO_ROW. `rows` may be null: element k has row k.
+// Gives a mesh an attribute: a copy of `values`, num_entries × components of the type of `what` (for names pointers to
+// strings), and of `entries`, for each element the entry it has or LWC_NO_ENTRY. `entries` may be null: element k has entry k.
 // There are as many elements as the mesh has vertices, corners (3 × triangles) or triangles.
 //
 // # Safety
 // `mesh` was handed out by this library, has not been freed and is used by this thread alone; `what` can be read and
-// its name ends in a zero; `values` and `rows` have that many elements and are aligned for their type.
+// its name ends in a zero; `values` and `entries` have that many elements and are aligned for their type.
 enum LwcStatus lwc_mesh_add_attribute(struct LwcMesh *mesh,
                                       const struct LwcAttribute *what,
                                       const void *values,
-                                      const uint32_t *rows);
+                                      const uint32_t *entries);
 
 // Number of attributes; 0 for null.
 //
@@ -435,7 +435,7 @@ enum LwcStatus lwc_mesh_attribute(const struct LwcMesh *mesh,
                                   size_t index,
                                   struct LwcAttribute *found);
 
-// Copies the table of an attribute, num_rows × components numbers of its type, into a buffer of exactly that size in
+// Copies the table of an attribute, num_entries × components numbers of its type, into a buffer of exactly that size in
 // bytes. Not for names.
 //
 // # Safety
@@ -445,24 +445,24 @@ enum LwcStatus lwc_mesh_attribute_values(const struct LwcMesh *mesh,
                                          void *values,
                                          size_t num_bytes);
 
-// Copies the row of each element, or LWC_NO_ROW, into an array of exactly as many elements as the mesh has of the
+// Copies the entry of each element, or LWC_NO_ENTRY, into an array of exactly as many elements as the mesh has of the
 // attribute's domain.
 //
 // # Safety
-// `mesh` was handed out by this library and has not been freed; `rows` has `num_elements` elements.
-enum LwcStatus lwc_mesh_attribute_rows(const struct LwcMesh *mesh,
-                                       size_t index,
-                                       uint32_t *rows,
-                                       size_t num_elements);
+// `mesh` was handed out by this library and has not been freed; `entries` has `num_elements` elements.
+enum LwcStatus lwc_mesh_attribute_indices(const struct LwcMesh *mesh,
+                                          size_t index,
+                                          uint32_t *entries,
+                                          size_t num_elements);
 
-// The name in a row of an attribute of names, valid until the mesh is freed or gets another attribute; null if there
+// The name in an entry of an attribute of names, valid until the mesh is freed or gets another attribute; null if there
 // is none.
 //
 // # Safety
 // `mesh` was handed out by this library and has not been freed.
 const char *lwc_mesh_attribute_name(const struct LwcMesh *mesh,
                                     size_t index,
-                                    size_t row);
+                                    size_t entry);
 
 // Says more about the last call of this thread that failed; valid until the next one that does.
 const char *lwc_last_error(void);
@@ -473,17 +473,17 @@ struct LwcDecodeOptions lwc_decode_options_default(void);
 // The defaults of the Rust library.
 struct LwcEncodeOptions lwc_encode_options_default(void);
 
-// Gives a mesh an attribute: a copy of `values`, num_rows × components of the type of `what` (for names pointers to
-// strings), and of `rows`, for each element the row it has or LWC_NO_ROW. `rows` may be null: element k has row k.
+// Gives a mesh an attribute: a copy of `values`, num_entries × components of the type of `what` (for names pointers to
+// strings), and of `entries`, for each element the entry it has or LWC_NO_ENTRY. `entries` may be null: element k has entry k.
 // There are as many elements as the mesh has vertices, corners (3 × triangles) or triangles.
 //
 // # Safety
 // `mesh` was handed out by this library, has not been freed and is used by this thread alone; `what` can be read and
-// its name ends in a zero; `values` and `rows` have that many elements and are aligned for their type.
+// its name ends in a zero; `values` and `entries` have that many elements and are aligned for their type.
 enum LwcStatus lwc_mesh_add_attribute(struct LwcMesh *mesh,
                                       const struct LwcAttribute *what,
                                       const void *values,
-                                      const uint32_t *rows);
+                                      const uint32_t *entries);
 
 // Number of attributes; 0 for null.
 //
@@ -507,7 +507,7 @@ enum LwcStatus lwc_mesh_attribute(const struct LwcMesh *mesh,
                                   size_t index,
                                   struct LwcAttribute *found);
 
-// Copies the table of an attribute, num_rows × components numbers of its type, into a buffer of exactly that size in
+// Copies the table of an attribute, num_entries × components numbers of its type, into a buffer of exactly that size in
 // bytes. Not for names.
 //
 // # Safety
@@ -517,24 +517,24 @@ enum LwcStatus lwc_mesh_attribute_values(const struct LwcMesh *mesh,
                                          void *values,
                                          size_t num_bytes);
 
-// Copies the row of each element, or LWC_NO_ROW, into an array of exactly as many elements as the mesh has of the
+// Copies the entry of each element, or LWC_NO_ENTRY, into an array of exactly as many elements as the mesh has of the
 // attribute's domain.
 //
 // # Safety
-// `mesh` was handed out by this library and has not been freed; `rows` has `num_elements` elements.
-enum LwcStatus lwc_mesh_attribute_rows(const struct LwcMesh *mesh,
-                                       size_t index,
-                                       uint32_t *rows,
-                                       size_t num_elements);
+// `mesh` was handed out by this library and has not been freed; `entries` has `num_elements` elements.
+enum LwcStatus lwc_mesh_attribute_indices(const struct LwcMesh *mesh,
+                                          size_t index,
+                                          uint32_t *entries,
+                                          size_t num_elements);
 
-// The name in a row of an attribute of names, valid until the mesh is freed or gets another attribute; null if there
+// The name in an entry of an attribute of names, valid until the mesh is freed or gets another attribute; null if there
 // is none.
 //
 // # Safety
 // `mesh` was handed out by this library and has not been freed.
 const char *lwc_mesh_attribute_name(const struct LwcMesh *mesh,
                                     size_t index,
-                                    size_t row);
+                                    size_t entry);
 
 // Says more about the last call of this thread that failed; valid until the next one that does.
 const char *lwc_last_error(void);

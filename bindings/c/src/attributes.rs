@@ -1,14 +1,14 @@
-//! What a mesh carries besides positions and triangles. Tables and rows are copied in and out; texts belong to the mesh.
+//! What a mesh carries besides positions and triangles. Tables and entries are copied in and out; texts belong to the mesh.
 
 use crate::error::{Status, guard, tell};
 use crate::{Mesh, check_array, elements, object, put};
-use lwc::mesh::{self, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
+use lwc::mesh::{self, Attributes, Domain, NO_ENTRY, Values};
 use std::ffi::{CStr, CString, c_char, c_void};
 
 /// What the values mean.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AttributeKind {
+pub enum Semantic {
     /// Anything; the name says what.
     Generic = 0,
     /// Direction away from the surface, three components.
@@ -41,7 +41,7 @@ pub enum AttributeDomain {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // Each is what its name says.
-pub enum AttributeType {
+pub enum ComponentType {
     I8 = 0,
     U8 = 1,
     I16 = 2,
@@ -54,32 +54,32 @@ pub enum AttributeType {
     Names = 8,
 }
 
-/// Row of an element that has no value.
-pub const LWC_NO_ROW: u32 = u32::MAX;
+/// Entry of an element that has no value.
+pub const LWC_NO_ENTRY: u32 = u32::MAX;
 
 // The header wants the number itself.
-const _: () = assert!(LWC_NO_ROW == NO_ROW);
+const _: () = assert!(LWC_NO_ENTRY == NO_ENTRY);
 
-/// An attribute: a table of values, and which element has which row of it.
+/// An attribute: a table of values, and which entry of it each element has.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Attribute {
     /// What the file calls it, UTF-8, ends in a zero.
     pub name: *const c_char,
-    /// An LwcAttributeKind.
-    pub kind: u32,
+    /// An LwcSemantic.
+    pub semantic: u32,
     /// Of texture coordinates and colours, which of several.
-    pub set: u32,
+    pub set_index: u32,
     /// An LwcAttributeDomain.
     pub domain: u32,
-    /// An LwcAttributeType.
-    pub scalar: u32,
-    /// Values of a row, 1 to 16; 1 for names.
-    pub components: u32,
+    /// An LwcComponentType.
+    pub component_type: u32,
+    /// Components of an entry, 1 to 16; 1 for names.
+    pub num_components: u32,
     /// Whether integers are fractions of the largest of their type.
     pub normalized: bool,
-    /// Rows of the table.
-    pub num_rows: usize,
+    /// Entries of the table.
+    pub num_entries: usize,
 }
 
 /// Texts as C wants them, of one attribute.
@@ -108,28 +108,28 @@ fn misfit(sentence: &str) -> Status {
     tell(Status::Attribute, sentence)
 }
 
-fn semantic(kind: u32, set: u32) -> Option<Semantic> {
-    Some(match kind {
-        0 => Semantic::Generic,
-        1 => Semantic::Normal,
-        2 => Semantic::TexCoord(set),
-        3 => Semantic::Color(set),
-        4 => Semantic::Material,
-        5 => Semantic::Group,
-        6 => Semantic::Object,
+fn from_c(semantic: u32, set_index: u32) -> Option<mesh::Semantic> {
+    Some(match semantic {
+        0 => mesh::Semantic::Generic,
+        1 => mesh::Semantic::Normal,
+        2 => mesh::Semantic::TexCoord(set_index),
+        3 => mesh::Semantic::Color(set_index),
+        4 => mesh::Semantic::Material,
+        5 => mesh::Semantic::Group,
+        6 => mesh::Semantic::Object,
         _ => return None,
     })
 }
 
-fn kind(semantic: Semantic) -> (AttributeKind, u32) {
+fn to_c(semantic: mesh::Semantic) -> (Semantic, u32) {
     match semantic {
-        Semantic::Normal => (AttributeKind::Normal, 0),
-        Semantic::TexCoord(set) => (AttributeKind::TexCoord, set),
-        Semantic::Color(set) => (AttributeKind::Color, set),
-        Semantic::Material => (AttributeKind::Material, 0),
-        Semantic::Group => (AttributeKind::Group, 0),
-        Semantic::Object => (AttributeKind::Object, 0),
-        _ => (AttributeKind::Generic, 0),
+        mesh::Semantic::Normal => (Semantic::Normal, 0),
+        mesh::Semantic::TexCoord(set) => (Semantic::TexCoord, set),
+        mesh::Semantic::Color(set) => (Semantic::Color, set),
+        mesh::Semantic::Material => (Semantic::Material, 0),
+        mesh::Semantic::Group => (Semantic::Group, 0),
+        mesh::Semantic::Object => (Semantic::Object, 0),
+        _ => (Semantic::Generic, 0),
     }
 }
 
@@ -149,7 +149,7 @@ unsafe fn string(pointer: *const c_char) -> Result<String, Status> {
 ///
 /// # Safety
 /// `values` has `count` elements of the type, strings for names.
-unsafe fn table(scalar: u32, values: *const c_void, count: usize) -> Result<Values, Status> {
+unsafe fn table(component_type: u32, values: *const c_void, count: usize) -> Result<Values, Status> {
     /// # Safety
     /// As of `table`.
     unsafe fn copy<T: Clone>(values: *const c_void, count: usize) -> Result<Vec<T>, Status> {
@@ -158,7 +158,7 @@ unsafe fn table(scalar: u32, values: *const c_void, count: usize) -> Result<Valu
     }
     // SAFETY: by the contract above.
     unsafe {
-        Ok(match scalar {
+        Ok(match component_type {
             0 => Values::I8(copy(values, count)?),
             1 => Values::U8(copy(values, count)?),
             2 => Values::I16(copy(values, count)?),
@@ -176,37 +176,39 @@ unsafe fn table(scalar: u32, values: *const c_void, count: usize) -> Result<Valu
     }
 }
 
-/// Gives a mesh an attribute: a copy of `values`, num_rows × components of the type of `what` (for names pointers to
-/// strings), and of `rows`, for each element the row it has or LWC_NO_ROW. `rows` may be null: element k has row k.
+/// Gives a mesh an attribute: a copy of `values`, num_entries × components of the type of `what` (for names pointers to
+/// strings), and of `entries`, for each element the entry it has or LWC_NO_ENTRY. `entries` may be null: element k has entry k.
 /// There are as many elements as the mesh has vertices, corners (3 × triangles) or triangles.
 ///
 /// # Safety
 /// `mesh` was handed out by this library, has not been freed and is used by this thread alone; `what` can be read and
-/// its name ends in a zero; `values` and `rows` have that many elements and are aligned for their type.
+/// its name ends in a zero; `values` and `entries` have that many elements and are aligned for their type.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lwc_mesh_add_attribute(
     mesh: *mut Mesh,
     what: *const Attribute,
     values: *const c_void,
-    rows: *const u32,
+    entries: *const u32,
 ) -> Status {
     guard(|| {
         // SAFETY: the caller's promise.
         let (mesh, what) = unsafe { (object(mesh)?, what.as_ref().ok_or(Status::NullPointer)?) };
         let domain =
             Domain::ALL.get(what.domain as usize).ok_or_else(|| misfit("there is no such domain"))?;
-        let semantic = semantic(what.kind, what.set).ok_or_else(|| misfit("there is no such kind"))?;
-        let count = what.num_rows.checked_mul(what.components as usize);
+        let semantic =
+            from_c(what.semantic, what.set_index).ok_or_else(|| misfit("there is no such semantic"))?;
+        let count = what.num_entries.checked_mul(what.num_components as usize);
         let count = count.ok_or_else(|| misfit("the table is too large"))?;
         // SAFETY: the caller's promise.
-        let (name, values) = unsafe { (string(what.name)?, table(what.scalar, values, count)?) };
+        let (name, values) = unsafe { (string(what.name)?, table(what.component_type, values, count)?) };
         let num_elements = domain.num_elements(&mesh.mesh);
         // SAFETY: the caller's promise.
-        let rows = (!rows.is_null()).then(|| unsafe { elements(rows, num_elements) }.map(<[u32]>::to_vec));
+        let entries =
+            (!entries.is_null()).then(|| unsafe { elements(entries, num_elements) }.map(<[u32]>::to_vec));
         let attribute = mesh::Attribute {
             is_normalized: what.normalized,
-            indices: rows.transpose()?,
-            ..mesh::Attribute::new(name, semantic, *domain, what.components as usize, values)
+            indices: entries.transpose()?,
+            ..mesh::Attribute::new(name, semantic, *domain, what.num_components as usize, values)
         };
         attribute.validate(&mesh.mesh).map_err(|error| misfit(&error.to_string()))?;
         mesh.texts.push(Texts::new(&attribute));
@@ -271,26 +273,27 @@ pub unsafe extern "C" fn lwc_mesh_attribute(
     guard(|| {
         // SAFETY: the caller's promise.
         let (_, attribute, texts) = unsafe { attribute(mesh, index) }?;
-        let (kind, set) = kind(attribute.semantic);
-        let place = |scalar| ScalarType::ALL.iter().position(|&other| other == scalar);
-        let scalar = attribute.values.scalar_type().and_then(place).unwrap_or(AttributeType::Names as usize);
+        let (semantic, set_index) = to_c(attribute.semantic);
+        let place = |found| mesh::ComponentType::ALL.iter().position(|&other| other == found);
+        let component_type =
+            attribute.values.component_type().and_then(place).unwrap_or(ComponentType::Names as usize);
         let domain = Domain::ALL.iter().position(|&domain| domain == attribute.domain).unwrap_or(0);
         let what = Attribute {
             name: texts.name.as_ptr(),
-            kind: kind as u32,
-            set,
+            semantic: semantic as u32,
+            set_index,
             domain: domain as u32,
-            scalar: scalar as u32,
-            components: attribute.num_components as u32,
+            component_type: component_type as u32,
+            num_components: attribute.num_components as u32,
             normalized: attribute.is_normalized,
-            num_rows: attribute.num_rows(),
+            num_entries: attribute.num_entries(),
         };
         // SAFETY: the caller's promise.
         unsafe { put(found, what) }
     })
 }
 
-/// Copies the table of an attribute, num_rows × components numbers of its type, into a buffer of exactly that size in
+/// Copies the table of an attribute, num_entries × components numbers of its type, into a buffer of exactly that size in
 /// bytes. Not for names.
 ///
 /// # Safety
@@ -305,8 +308,8 @@ pub unsafe extern "C" fn lwc_mesh_attribute_values(
     guard(|| {
         // SAFETY: the caller's promise.
         let (_, attribute, _) = unsafe { attribute(mesh, index) }?;
-        let scalar = attribute.values.scalar_type();
-        let size = scalar.ok_or_else(|| misfit("names are no numbers"))?.num_bytes();
+        let component_type = attribute.values.component_type();
+        let size = component_type.ok_or_else(|| misfit("names are no numbers"))?.num_bytes();
         let count = attribute.values.len();
         if num_bytes != size * count {
             return Err(misfit(&format!("the table has {} bytes, the buffer {num_bytes}", size * count)));
@@ -322,16 +325,16 @@ pub unsafe extern "C" fn lwc_mesh_attribute_values(
     })
 }
 
-/// Copies the row of each element, or LWC_NO_ROW, into an array of exactly as many elements as the mesh has of the
+/// Copies the entry of each element, or LWC_NO_ENTRY, into an array of exactly as many elements as the mesh has of the
 /// attribute's domain.
 ///
 /// # Safety
-/// `mesh` was handed out by this library and has not been freed; `rows` has `num_elements` elements.
+/// `mesh` was handed out by this library and has not been freed; `entries` has `num_elements` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn lwc_mesh_attribute_rows(
+pub unsafe extern "C" fn lwc_mesh_attribute_indices(
     mesh: *const Mesh,
     index: usize,
-    rows: *mut u32,
+    entries: *mut u32,
     num_elements: usize,
 ) -> Status {
     guard(|| {
@@ -341,13 +344,13 @@ pub unsafe extern "C" fn lwc_mesh_attribute_rows(
         if num_elements != count {
             return Err(misfit(&format!("there are {count} elements, the array has {num_elements}")));
         }
-        let row = |element| attribute.row(element).map_or(NO_ROW, |row| row as u32);
+        let entry = |element| attribute.entry(element).map_or(NO_ENTRY, |entry| entry as u32);
         // SAFETY: the caller's promise.
-        unsafe { copy_out(rows, &(0..count).map(row).collect::<Vec<u32>>()) }
+        unsafe { copy_out(entries, &(0..count).map(entry).collect::<Vec<u32>>()) }
     })
 }
 
-/// The name in a row of an attribute of names, valid until the mesh is freed or gets another attribute; null if there
+/// The name in an entry of an attribute of names, valid until the mesh is freed or gets another attribute; null if there
 /// is none.
 ///
 /// # Safety
@@ -356,11 +359,11 @@ pub unsafe extern "C" fn lwc_mesh_attribute_rows(
 pub unsafe extern "C" fn lwc_mesh_attribute_name(
     mesh: *const Mesh,
     index: usize,
-    row: usize,
+    entry: usize,
 ) -> *const c_char {
     // SAFETY: the caller's promise.
     let found = unsafe { attribute(mesh, index) };
-    let name = found.ok().and_then(|(_, _, texts)| texts.names.get(row));
+    let name = found.ok().and_then(|(_, _, texts)| texts.names.get(entry));
     name.map_or(std::ptr::null(), |name| name.as_ptr())
 }
 

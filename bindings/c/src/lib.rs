@@ -10,8 +10,8 @@ mod error;
 mod options;
 
 pub use attributes::{
-    Attribute, AttributeDomain, AttributeKind, AttributeType, LWC_NO_ROW, lwc_mesh_add_attribute,
-    lwc_mesh_attribute, lwc_mesh_attribute_name, lwc_mesh_attribute_rows, lwc_mesh_attribute_values,
+    Attribute, AttributeDomain, ComponentType, LWC_NO_ENTRY, Semantic, lwc_mesh_add_attribute,
+    lwc_mesh_attribute, lwc_mesh_attribute_indices, lwc_mesh_attribute_name, lwc_mesh_attribute_values,
     lwc_mesh_find_attribute, lwc_mesh_num_attributes,
 };
 pub use error::{Status, lwc_last_error};
@@ -58,11 +58,11 @@ pub struct Pass {
     /// Level after the pass.
     pub level: u32,
     /// Bits per coordinate after the pass.
-    pub precision: u32,
+    pub quantization_bits: u32,
     /// Vertices after the pass.
     pub vertices: u32,
     /// Triangles after the pass.
-    pub faces: u32,
+    pub triangles: u32,
     /// Bytes of its chunk.
     pub bytes: u64,
     /// Bytes of the stream up to the end of the pass.
@@ -396,8 +396,8 @@ fn pass(pass: &lwc::PassInfo) -> Pass {
         PassKind::Split => 1,
         _ => 2,
     };
-    let lwc::PassInfo { level, precision, vertices, faces, bytes, end, .. } = *pass;
-    Pass { kind, level, precision, vertices, faces, bytes, end }
+    let lwc::PassInfo { level, quantization_bits, vertices, triangles, bytes, end, .. } = *pass;
+    Pass { kind, level, quantization_bits, vertices, triangles, bytes, end }
 }
 
 /// Vertices of the mesh at hand; 0 before the base mesh.

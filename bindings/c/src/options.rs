@@ -20,7 +20,7 @@ pub struct DecodeOptions {
     /// Most units of work, each about a tenth of a microsecond; 0: in proportion to the bytes of the stream.
     pub max_work: u64,
     /// Leave the vertices of coarse levels where they are in the finest mesh.
-    pub uncompensated: bool,
+    pub no_shrinkage_compensation: bool,
 }
 
 /// How to encode. See `EncodeOptions` of the Rust library for what the numbers mean.
@@ -29,9 +29,9 @@ pub struct DecodeOptions {
 pub struct EncodeOptions {
     /// Name of the descriptor, such as "harris3d"; null for the default.
     pub descriptor: *const c_char,
-    /// Name of the partition, "balanced" or "algorithm1"; null for the default.
+    /// Name of the partition, "weighted-error" or "algorithm1"; null for the default.
     pub partition: *const c_char,
-    /// What the balanced partition aims at, "size", "balanced" or "prefix"; null for the default.
+    /// What the partition by weighted error aims at, "size", "balanced" or "prefix"; null for the default.
     pub optimize: *const c_char,
     /// Topological radius of the window, in edges.
     pub rings: u32,
@@ -40,7 +40,7 @@ pub struct EncodeOptions {
     /// Factor of the radius from each level to the next coarser one.
     pub growth: f64,
     /// Bits per coordinate, 1 to 30.
-    pub quantization: u32,
+    pub quantization_bits: u32,
     /// Levels above the base mesh; negative: until the base mesh is small.
     pub levels: i32,
     /// Grid steps to the mean edge of a level; 0: by the error of each level.
@@ -48,7 +48,7 @@ pub struct EncodeOptions {
     /// Bits of each of the two coordinates of a normal, 2 to 30.
     pub normal_bits: u32,
     /// Bits of a texture coordinate, 1 to 30.
-    pub uv_bits: u32,
+    pub texcoord_bits: u32,
     /// Bits of a component of a colour, 1 to 30.
     pub color_bits: u32,
     /// Bits of a component of any other attribute, 1 to 30.
@@ -72,7 +72,14 @@ pub struct EncodeOptions {
 pub extern "C" fn lwc_decode_options_default() -> DecodeOptions {
     let Limits { max_memory, max_vertices, max_levels, max_work } = Limits::default();
     let max_work = max_work.unwrap_or(0);
-    DecodeOptions { level: -1, max_memory, max_vertices, max_levels, max_work, uncompensated: false }
+    DecodeOptions {
+        level: -1,
+        max_memory,
+        max_vertices,
+        max_levels,
+        max_work,
+        no_shrinkage_compensation: false,
+    }
 }
 
 /// The defaults of the Rust library.
@@ -86,11 +93,11 @@ pub extern "C" fn lwc_encode_options_default() -> EncodeOptions {
         rings: options.window.rings,
         radius: options.window.radius,
         growth: options.growth,
-        quantization: options.quantization,
+        quantization_bits: options.quantization_bits,
         levels: options.levels.map_or(-1, |levels| levels as i32),
         steps_per_edge: options.steps_per_edge.unwrap_or(0.0),
         normal_bits: options.normal_bits,
-        uv_bits: options.uv_bits,
+        texcoord_bits: options.texcoord_bits,
         color_bits: options.color_bits,
         generic_bits: options.generic_bits,
         profile: std::ptr::null(),
@@ -103,14 +110,20 @@ pub extern "C" fn lwc_encode_options_default() -> EncodeOptions {
 }
 
 pub fn decode(options: Option<&DecodeOptions>) -> lwc::DecodeOptions {
-    let Some(&DecodeOptions { level, max_memory, max_vertices, max_levels, max_work, uncompensated }) =
-        options
+    let Some(&DecodeOptions {
+        level,
+        max_memory,
+        max_vertices,
+        max_levels,
+        max_work,
+        no_shrinkage_compensation,
+    }) = options
     else {
         return lwc::DecodeOptions::new();
     };
     let max_work = (max_work != 0).then_some(max_work);
     let limits = Limits { max_memory, max_vertices, max_levels, max_work };
-    let options = lwc::DecodeOptions::new().limits(limits).compensate(!uncompensated);
+    let options = lwc::DecodeOptions::new().limits(limits).shrinkage_compensation(!no_shrinkage_compensation);
     u32::try_from(level).map_or(options, |level| options.level(level))
 }
 
@@ -133,11 +146,11 @@ pub fn encode(from: &EncodeOptions) -> Result<lwc::EncodeOptions, Status> {
     }
     options.window = Window { rings: from.rings, radius: from.radius };
     options.growth = from.growth;
-    options.quantization = from.quantization;
+    options.quantization_bits = from.quantization_bits;
     options.levels = u32::try_from(from.levels).ok();
     options.steps_per_edge = (from.steps_per_edge != 0.0).then_some(from.steps_per_edge);
     options.normal_bits = from.normal_bits;
-    options.uv_bits = from.uv_bits;
+    options.texcoord_bits = from.texcoord_bits;
     options.color_bits = from.color_bits;
     options.generic_bits = from.generic_bits;
     options.effort = from.effort;

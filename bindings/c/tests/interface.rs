@@ -60,9 +60,9 @@ fn errors_have_a_status_and_a_sentence() {
 
         let mut encoded = null_mut();
         let mut options = lwc_encode_options_default();
-        options.quantization = 99;
+        options.quantization_bits = 99;
         assert_eq!(lwc_encode(mesh, &options, &mut encoded), Status::Option);
-        assert!(last_error().contains("quantization is 99"), "{}", last_error());
+        assert!(last_error().contains("quantization bits is 99"), "{}", last_error());
         options = lwc_encode_options_default();
         options.descriptor = c"magic".as_ptr();
         assert_eq!(lwc_encode(mesh, &options, &mut encoded), Status::Option);
@@ -92,16 +92,21 @@ fn square() -> *mut Mesh {
     mesh
 }
 
-fn what(name: &CStr, kind: AttributeKind, domain: AttributeDomain, scalar: AttributeType) -> Attribute {
+fn what(
+    name: &CStr,
+    semantic: Semantic,
+    domain: AttributeDomain,
+    component_type: ComponentType,
+) -> Attribute {
     Attribute {
         name: name.as_ptr(),
-        kind: kind as u32,
-        set: 0,
+        semantic: semantic as u32,
+        set_index: 0,
         domain: domain as u32,
-        scalar: scalar as u32,
-        components: 1,
+        component_type: component_type as u32,
+        num_components: 1,
         normalized: false,
-        num_rows: 0,
+        num_entries: 0,
     }
 }
 
@@ -109,22 +114,22 @@ fn what(name: &CStr, kind: AttributeKind, domain: AttributeDomain, scalar: Attri
 fn attributes_go_through_a_stream() {
     let mesh = square();
     let uv = [[0.0_f32, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 0.5], [0.75, 0.25]];
-    let rows = [0, 1, 2, 3, 4, LWC_NO_ROW];
+    let entries = [0, 1, 2, 3, 4, LWC_NO_ENTRY];
     let names = [c"left".as_ptr(), c"right".as_ptr()];
     unsafe {
-        let place = what(c"uv", AttributeKind::TexCoord, AttributeDomain::Corner, AttributeType::F32);
-        let place = Attribute { set: 3, components: 2, num_rows: 5, ..place };
-        assert_eq!(lwc_mesh_add_attribute(mesh, &place, uv.as_ptr().cast(), rows.as_ptr()), Status::Ok);
-        let part = what(c"part", AttributeKind::Group, AttributeDomain::Face, AttributeType::Names);
-        let part = Attribute { num_rows: 2, ..part };
+        let place = what(c"uv", Semantic::TexCoord, AttributeDomain::Corner, ComponentType::F32);
+        let place = Attribute { set_index: 3, num_components: 2, num_entries: 5, ..place };
+        assert_eq!(lwc_mesh_add_attribute(mesh, &place, uv.as_ptr().cast(), entries.as_ptr()), Status::Ok);
+        let part = what(c"part", Semantic::Group, AttributeDomain::Face, ComponentType::Names);
+        let part = Attribute { num_entries: 2, ..part };
         assert_eq!(lwc_mesh_add_attribute(mesh, &part, names.as_ptr().cast(), null()), Status::Ok);
-        let heat = what(c"heat", AttributeKind::Generic, AttributeDomain::Vertex, AttributeType::I16);
-        let heat = Attribute { num_rows: 4, normalized: true, ..heat };
+        let heat = what(c"heat", Semantic::Generic, AttributeDomain::Vertex, ComponentType::I16);
+        let heat = Attribute { num_entries: 4, normalized: true, ..heat };
         let heats = [-300_i16, 0, 7, 1000];
         assert_eq!(lwc_mesh_add_attribute(mesh, &heat, heats.as_ptr().cast(), null()), Status::Ok);
 
         let mut options = lwc_encode_options_default();
-        (options.lossless, options.keep_order, options.uv_bits) = (true, true, 16);
+        (options.lossless, options.keep_order, options.texcoord_bits) = (true, true, 16);
         let (mut encoded, mut decoded) = (null_mut(), null_mut());
         assert_eq!(lwc_encode(mesh, &options, &mut encoded), Status::Ok);
         let (bytes, size) = (lwc_encoded_bytes(encoded), lwc_encoded_num_bytes(encoded));
@@ -146,27 +151,29 @@ fn attributes_go_through_a_stream() {
 }
 
 unsafe fn check_square(mesh: *const Mesh, uv: &[[f32; 2]], heats: &[i16; 4]) {
-    let (mut found, mut index) =
-        (what(c"", AttributeKind::Generic, AttributeDomain::Face, AttributeType::U8), 9);
+    let (mut found, mut index) = (what(c"", Semantic::Generic, AttributeDomain::Face, ComponentType::U8), 9);
     unsafe {
         assert_eq!((lwc_mesh_num_attributes(mesh), lwc_mesh_num_triangles(mesh)), (3, 2));
         assert_eq!(lwc_mesh_find_attribute(mesh, c"uv".as_ptr(), &mut index), Status::Ok);
         assert_eq!(lwc_mesh_attribute(mesh, index, &mut found), Status::Ok);
         assert_eq!(CStr::from_ptr(found.name), c"uv");
-        assert_eq!((found.kind, found.set, found.domain, found.scalar, found.components), (2, 3, 1, 6, 2));
-        let (mut values, mut rows) = (vec![[0.0_f32; 2]; found.num_rows], [0; 6]);
+        assert_eq!(
+            (found.semantic, found.set_index, found.domain, found.component_type, found.num_components),
+            (2, 3, 1, 6, 2)
+        );
+        let (mut values, mut entries) = (vec![[0.0_f32; 2]; found.num_entries], [0; 6]);
         let num_bytes = size_of_val(&values[..]);
         assert_eq!(lwc_mesh_attribute_values(mesh, index, values.as_mut_ptr().cast(), num_bytes), Status::Ok);
-        assert_eq!(lwc_mesh_attribute_rows(mesh, index, rows.as_mut_ptr(), 6), Status::Ok);
-        assert_eq!(rows[5], LWC_NO_ROW);
+        assert_eq!(lwc_mesh_attribute_indices(mesh, index, entries.as_mut_ptr(), 6), Status::Ok);
+        assert_eq!(entries[5], LWC_NO_ENTRY);
         for corner in 0..5 {
-            let [u, v] = values[rows[corner] as usize];
+            let [u, v] = values[entries[corner] as usize];
             assert!((u - uv[corner][0]).abs() < 1e-4 && (v - uv[corner][1]).abs() < 1e-4);
         }
         assert_eq!(lwc_mesh_find_attribute(mesh, c"part".as_ptr(), &mut index), Status::Ok);
         let mut of = [0; 2];
-        assert_eq!(lwc_mesh_attribute_rows(mesh, index, of.as_mut_ptr(), 2), Status::Ok);
-        let name = |row: u32| CStr::from_ptr(lwc_mesh_attribute_name(mesh, index, row as usize));
+        assert_eq!(lwc_mesh_attribute_indices(mesh, index, of.as_mut_ptr(), 2), Status::Ok);
+        let name = |entry: u32| CStr::from_ptr(lwc_mesh_attribute_name(mesh, index, entry as usize));
         assert_eq!(of.map(name), [c"left", c"right"]);
         assert!(lwc_mesh_attribute_name(mesh, index, 2).is_null());
         let status = lwc_mesh_attribute_values(mesh, index, null_mut(), 0);
@@ -174,13 +181,13 @@ unsafe fn check_square(mesh: *const Mesh, uv: &[[f32; 2]], heats: &[i16; 4]) {
 
         assert_eq!(lwc_mesh_find_attribute(mesh, c"heat".as_ptr(), &mut index), Status::Ok);
         assert_eq!(lwc_mesh_attribute(mesh, index, &mut found), Status::Ok);
-        assert!(found.normalized && found.scalar == AttributeType::I16 as u32);
-        let (mut values, mut rows) = (vec![0_i16; found.num_rows], [0; 4]);
+        assert!(found.normalized && found.component_type == ComponentType::I16 as u32);
+        let (mut values, mut entries) = (vec![0_i16; found.num_entries], [0; 4]);
         let num_bytes = size_of_val(&values[..]);
         assert_eq!(lwc_mesh_attribute_values(mesh, index, values.as_mut_ptr().cast(), num_bytes), Status::Ok);
-        assert_eq!(lwc_mesh_attribute_rows(mesh, index, rows.as_mut_ptr(), 4), Status::Ok);
-        assert_eq!(rows.map(|row| values[row as usize]), *heats);
-        assert_eq!(lwc_mesh_attribute_rows(mesh, index, rows.as_mut_ptr(), 3), Status::Attribute);
+        assert_eq!(lwc_mesh_attribute_indices(mesh, index, entries.as_mut_ptr(), 4), Status::Ok);
+        assert_eq!(entries.map(|entry| values[entry as usize]), *heats);
+        assert_eq!(lwc_mesh_attribute_indices(mesh, index, entries.as_mut_ptr(), 3), Status::Attribute);
         assert_eq!(lwc_mesh_attribute_values(mesh, index, values.as_mut_ptr().cast(), 1), Status::Attribute);
     }
 }
@@ -188,18 +195,18 @@ unsafe fn check_square(mesh: *const Mesh, uv: &[[f32; 2]], heats: &[i16; 4]) {
 #[test]
 fn attributes_that_fit_nothing_are_refused() {
     let mesh = square();
-    let good = what(c"a", AttributeKind::Generic, AttributeDomain::Vertex, AttributeType::F64);
-    let good = Attribute { num_rows: 4, ..good };
+    let good = what(c"a", Semantic::Generic, AttributeDomain::Vertex, ComponentType::F64);
+    let good = Attribute { num_entries: 4, ..good };
     let values = [0.0_f64; 16];
     let add =
         |what: Attribute| unsafe { lwc_mesh_add_attribute(mesh, &what, values.as_ptr().cast(), null()) };
     for bad in [
-        Attribute { num_rows: 3, ..good },
-        Attribute { components: 0, ..good },
-        Attribute { kind: 7, ..good },
+        Attribute { num_entries: 3, ..good },
+        Attribute { num_components: 0, ..good },
+        Attribute { semantic: 7, ..good },
         Attribute { domain: 3, ..good },
-        Attribute { scalar: 9, ..good },
-        Attribute { num_rows: usize::MAX, components: 2, ..good },
+        Attribute { component_type: 9, ..good },
+        Attribute { num_entries: usize::MAX, num_components: 2, ..good },
     ] {
         assert_eq!(add(bad), Status::Attribute, "{bad:?}");
     }
@@ -213,7 +220,7 @@ fn attributes_that_fit_nothing_are_refused() {
             lwc_mesh_add_attribute(mesh, &good, values.as_ptr().cast(), [0, 1, 2, 4].as_ptr()),
             Status::Attribute
         );
-        assert!(last_error().contains("element 3 has row 4"), "{}", last_error());
+        assert!(last_error().contains("element 3 has entry 4"), "{}", last_error());
         lwc_mesh_free(mesh);
     }
 }
@@ -231,7 +238,7 @@ fn every_option_reaches_the_encoder() {
     for (name, message) in [
         ("effort", refused(|o| o.effort = 10)),
         ("normal bits", refused(|o| o.normal_bits = 1)),
-        ("uv bits", refused(|o| o.uv_bits = 0)),
+        ("texcoord bits", refused(|o| o.texcoord_bits = 0)),
         ("color bits", refused(|o| o.color_bits = 31)),
         ("generic bits", refused(|o| o.generic_bits = 0)),
     ] {

@@ -1,17 +1,17 @@
 //! Attributes: `lwc.Attribute` of Python and that of the library.
 
 use lwc::TriMesh;
-use lwc::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Values};
+use lwc::mesh::{Attribute, Attributes, Domain, NO_ENTRY, Semantic, Values};
 use numpy::{Element, IntoPyArray, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 const DOMAINS: [(&str, Domain); 3] =
-    [("vertex", Domain::Vertex), ("corner", Domain::Corner), ("face", Domain::Face)];
+    [("vertex", Domain::Vertex), ("corner", Domain::Corner), ("face", Domain::Triangle)];
 
 /// Name of a semantic, and which of several.
-pub fn kind(semantic: Semantic) -> (&'static str, u32) {
+pub fn to_python(semantic: Semantic) -> (&'static str, u32) {
     match semantic {
         Semantic::Normal => ("normal", 0),
         Semantic::TexCoord(set) => ("texcoord", set),
@@ -23,16 +23,16 @@ pub fn kind(semantic: Semantic) -> (&'static str, u32) {
     }
 }
 
-fn semantic(kind: &str, set: u32) -> PyResult<Semantic> {
-    Ok(match kind {
+fn from_python(semantic: &str, set_index: u32) -> PyResult<Semantic> {
+    Ok(match semantic {
         "normal" => Semantic::Normal,
-        "texcoord" => Semantic::TexCoord(set),
-        "color" => Semantic::Color(set),
+        "texcoord" => Semantic::TexCoord(set_index),
+        "color" => Semantic::Color(set_index),
         "material" => Semantic::Material,
         "group" => Semantic::Group,
         "object" => Semantic::Object,
         "generic" => Semantic::Generic,
-        _ => return Err(PyValueError::new_err(format!("there is no kind of attribute {kind}"))),
+        _ => return Err(PyValueError::new_err(format!("there is no semantic {semantic}"))),
     })
 }
 
@@ -51,21 +51,21 @@ pub fn read(py: Python<'_>, dict: &Bound<'_, PyDict>) -> PyResult<Attributes> {
     let mut attributes = Attributes::default();
     for (name, item) in dict {
         let item = class.call_method1("of", (item,))?;
-        let kind: String = item.getattr("kind")?.extract()?;
+        let semantic: String = item.getattr("semantic")?.extract()?;
         let domain: String = item.getattr("domain")?.extract()?;
         let domain = DOMAINS.iter().find(|(other, _)| *other == domain).map(|&(_, domain)| domain);
         let (values, num_components) = read_table(&item.call_method0("_table")?)?;
         let indices: Option<PyReadonlyArray1<i64>> = item.call_method0("_indices")?.extract()?;
         // An index that does not fit is out of range, and said to be.
-        let row =
-            |&index: &i64| if index == -1 { NO_ROW } else { u32::try_from(index).unwrap_or(NO_ROW - 1) };
-        let indices = indices.as_ref().map(|rows| rows.as_slice()).transpose()?;
+        let entry =
+            |&index: &i64| if index == -1 { NO_ENTRY } else { u32::try_from(index).unwrap_or(NO_ENTRY - 1) };
+        let indices = indices.as_ref().map(|entries| entries.as_slice()).transpose()?;
         attributes.list.push(Attribute {
             is_normalized: item.getattr("normalized")?.extract()?,
-            indices: indices.map(|rows| rows.iter().map(row).collect()),
+            indices: indices.map(|entries| entries.iter().map(entry).collect()),
             ..Attribute::new(
                 name.extract::<String>()?,
-                semantic(&kind, item.getattr("set")?.extract()?)?,
+                from_python(&semantic, item.getattr("set_index")?.extract()?)?,
                 domain.ok_or_else(|| PyValueError::new_err("a domain is vertex, corner or face"))?,
                 num_components,
                 values,
@@ -75,7 +75,7 @@ pub fn read(py: Python<'_>, dict: &Bound<'_, PyDict>) -> PyResult<Attributes> {
     Ok(attributes)
 }
 
-/// Values and components of a row.
+/// Values and components of an entry.
 fn read_table(table: &Bound<'_, PyAny>) -> PyResult<(Values, usize)> {
     if let Ok(names) = table.extract::<Vec<String>>() {
         return Ok((Values::Names(names), 1));
@@ -115,10 +115,11 @@ fn write<'py>(py: Python<'py>, attributes: Attributes) -> PyResult<Bound<'py, Py
             Values::F64(v) => table(py, v, num_components),
             Values::Names(names) => names.into_pyobject(py),
         }?;
-        let row = |row: u32| if row == NO_ROW { -1 } else { i64::from(row) };
-        let indices = indices.map(|rows| rows.into_iter().map(row).collect::<Vec<_>>().into_pyarray(py));
-        let (kind, set) = kind(semantic);
-        let made = class.call1((values, domain(of), kind, set, is_normalized, indices))?;
+        let entry = |entry: u32| if entry == NO_ENTRY { -1 } else { i64::from(entry) };
+        let indices =
+            indices.map(|entries| entries.into_iter().map(entry).collect::<Vec<_>>().into_pyarray(py));
+        let (semantic, set_index) = to_python(semantic);
+        let made = class.call1((values, domain(of), semantic, set_index, is_normalized, indices))?;
         let mut key = name.clone();
         let mut number = 2;
         while dict.contains(&key)? {
@@ -130,7 +131,7 @@ fn write<'py>(py: Python<'py>, attributes: Attributes) -> PyResult<Bound<'py, Py
     Ok(dict)
 }
 
-/// Rows × components, or rows if these have one.
+/// Entries × components, or entries if these have one.
 fn table<'py, T: Element>(py: Python<'py>, values: Vec<T>, components: usize) -> PyResult<Bound<'py, PyAny>> {
     let flat = values.into_pyarray(py).into_any();
     if components == 1 { Ok(flat) } else { flat.call_method1("reshape", ((-1, components),)) }

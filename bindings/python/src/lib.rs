@@ -77,13 +77,13 @@ fn tri_mesh<'py>(
 
 /// Decodes a stream, or the beginning of one. Returns a lwc.Mesh.
 #[pyfunction]
-#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None, max_work=None))]
+#[pyo3(signature = (stream, *, level=None, shrinkage_compensation=true, max_memory=None, max_vertices=None, max_levels=None, max_work=None))]
 #[allow(clippy::too_many_arguments)] // Each is a keyword of Python.
 fn decode<'py>(
     py: Python<'py>,
     stream: &[u8],
     level: Option<u32>,
-    compensate: bool,
+    shrinkage_compensation: bool,
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
     max_levels: Option<u32>,
@@ -94,20 +94,20 @@ fn decode<'py>(
         decoded(
             py,
             stream,
-            options::decode(level, compensate, max_memory, max_vertices, max_levels, max_work),
+            options::decode(level, shrinkage_compensation, max_memory, max_vertices, max_levels, max_work),
         )?,
     )
 }
 
 /// Decodes a stream, or the beginning of one, as a lwc.Scene: a mesh alone is a scene of one instance.
 #[pyfunction]
-#[pyo3(signature = (stream, *, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None, max_work=None))]
+#[pyo3(signature = (stream, *, level=None, shrinkage_compensation=true, max_memory=None, max_vertices=None, max_levels=None, max_work=None))]
 #[allow(clippy::too_many_arguments)] // Each is a keyword of Python.
 fn decode_scene<'py>(
     py: Python<'py>,
     stream: &[u8],
     level: Option<u32>,
-    compensate: bool,
+    shrinkage_compensation: bool,
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
     max_levels: Option<u32>,
@@ -118,7 +118,7 @@ fn decode_scene<'py>(
         decoded(
             py,
             stream,
-            options::decode(level, compensate, max_memory, max_vertices, max_levels, max_work),
+            options::decode(level, shrinkage_compensation, max_memory, max_vertices, max_levels, max_work),
         )?,
     )
 }
@@ -147,9 +147,9 @@ fn info_dict<'py>(py: Python<'py>, info: &StreamInfo) -> PyResult<Bound<'py, PyD
             let row = PyDict::new(py);
             row.set_item("kind", pass.kind.name())?;
             row.set_item("level", pass.level)?;
-            row.set_item("precision", pass.precision)?;
+            row.set_item("quantization_bits", pass.quantization_bits)?;
             row.set_item("vertices", pass.vertices)?;
-            row.set_item("faces", pass.faces)?;
+            row.set_item("faces", pass.triangles)?;
             row.set_item("bytes", pass.bytes)?;
             row.set_item("end", pass.end)?;
             Ok(row)
@@ -157,7 +157,7 @@ fn info_dict<'py>(py: Python<'py>, info: &StreamInfo) -> PyResult<Bound<'py, PyD
         .collect();
     let [x, y, z] = info.origin();
     let dict = PyDict::new(py);
-    dict.set_item("precision", info.precision())?;
+    dict.set_item("quantization_bits", info.quantization_bits())?;
     dict.set_item("origin", (x, y, z))?;
     dict.set_item("side", info.side())?;
     dict.set_item("levels", info.finest_level())?;
@@ -170,11 +170,11 @@ fn info_dict<'py>(py: Python<'py>, info: &StreamInfo) -> PyResult<Bound<'py, PyD
 }
 
 fn attribute_dict<'py>(py: Python<'py>, attribute: &lwc::AttributeInfo) -> PyResult<Bound<'py, PyDict>> {
-    let (kind, set) = attributes::kind(attribute.semantic);
+    let (semantic, set_index) = attributes::to_python(attribute.semantic);
     let dict = PyDict::new(py);
     dict.set_item("name", &attribute.name)?;
-    dict.set_item("kind", kind)?;
-    dict.set_item("set", set)?;
+    dict.set_item("semantic", semantic)?;
+    dict.set_item("set_index", set_index)?;
     dict.set_item("domain", attributes::domain(attribute.domain))?;
     dict.set_item("components", attribute.num_components)?;
     dict.set_item("bits", attribute.bits)?;
@@ -187,7 +187,7 @@ struct Update {
     /// base, split or refine.
     kind: &'static str,
     level: u32,
-    precision: u32,
+    quantization_bits: u32,
     vertices: u32,
     faces: u32,
     /// Bytes of the stream up to the end of the pass.
@@ -203,8 +203,8 @@ struct Update {
 #[pymethods]
 impl Update {
     fn __repr__(&self) -> String {
-        let Self { kind, level, precision, vertices, faces, .. } = self;
-        format!("Update({kind}: level {level}, {precision} bits, {vertices} vertices, {faces} faces)")
+        let Self { kind, level, quantization_bits, vertices, faces, .. } = self;
+        format!("Update({kind}: level {level}, {quantization_bits} bits, {vertices} vertices, {faces} faces)")
     }
 }
 
@@ -214,9 +214,9 @@ impl From<lwc::Update> for Update {
         Self {
             kind: update.pass.kind.name(),
             level: update.pass.level,
-            precision: update.pass.precision,
+            quantization_bits: update.pass.quantization_bits,
             vertices: update.pass.vertices,
-            faces: update.pass.faces,
+            faces: update.pass.triangles,
             end: update.pass.end,
             changed_vertices: pair(update.vertices),
             new_faces: pair(update.new_triangles),
@@ -233,16 +233,17 @@ struct Decoder(Box<lwc::Decoder>);
 #[pymethods]
 impl Decoder {
     #[new]
-    #[pyo3(signature = (*, level=None, compensate=true, max_memory=None, max_vertices=None, max_levels=None, max_work=None))]
+    #[pyo3(signature = (*, level=None, shrinkage_compensation=true, max_memory=None, max_vertices=None, max_levels=None, max_work=None))]
     fn new(
         level: Option<u32>,
-        compensate: bool,
+        shrinkage_compensation: bool,
         max_memory: Option<u64>,
         max_vertices: Option<u32>,
         max_levels: Option<u32>,
         max_work: Option<u64>,
     ) -> Self {
-        let options = options::decode(level, compensate, max_memory, max_vertices, max_levels, max_work);
+        let options =
+            options::decode(level, shrinkage_compensation, max_memory, max_vertices, max_levels, max_work);
         Self(Box::new(lwc::Decoder::with_options(options)))
     }
 

@@ -23,11 +23,11 @@ pub fn encode(py: Python<'_>, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<
             "rings" => options.window.rings = value.extract()?,
             "radius" => options.window.radius = value.extract()?,
             "growth" => options.growth = value.extract()?,
-            "quantization" => options.quantization = value.extract()?,
+            "quantization_bits" => options.quantization_bits = value.extract()?,
             "levels" => options.levels = Some(value.extract()?),
             "steps_per_edge" => options.steps_per_edge = Some(value.extract()?),
             "normal_bits" => options.normal_bits = value.extract()?,
-            "uv_bits" => options.uv_bits = value.extract()?,
+            "texcoord_bits" => options.texcoord_bits = value.extract()?,
             "color_bits" => options.color_bits = value.extract()?,
             "generic_bits" => options.generic_bits = value.extract()?,
             "effort" => options.effort = value.extract()?,
@@ -57,14 +57,14 @@ fn find<T: Copy>(
 
 pub fn decode(
     level: Option<u32>,
-    compensate: bool,
+    shrinkage_compensation: bool,
     max_memory: Option<u64>,
     max_vertices: Option<u32>,
     max_levels: Option<u32>,
     max_work: Option<u64>,
 ) -> DecodeOptions {
     let default = Limits::default();
-    let options = DecodeOptions::new().compensate(compensate).limits(Limits {
+    let options = DecodeOptions::new().shrinkage_compensation(shrinkage_compensation).limits(Limits {
         max_memory: max_memory.unwrap_or(default.max_memory),
         max_vertices: max_vertices.unwrap_or(default.max_vertices),
         max_levels: max_levels.unwrap_or(default.max_levels),

@@ -58,7 +58,7 @@ def test_golden_streams_have_their_checksums_after_each_pass(name, checksums):
 
 def test_a_mesh_comes_back_on_the_grid():
     vertices, faces = torus()
-    stream = lwc.encode(vertices, faces, descriptor="harris3d", quantization=14)
+    stream = lwc.encode(vertices, faces, descriptor="harris3d", quantization_bits=14)
     assert isinstance(stream, bytes)
     back, triangles = lwc.decode(stream)
     assert back.shape == vertices.shape and back.dtype == np.float64
@@ -79,9 +79,9 @@ def test_levels_and_prefixes_are_coarser_meshes():
     level = 3
     vertices, faces = lwc.decode(stream, level=level)
     assert len(vertices) == max(p["vertices"] for p in passes if p["level"] == level)
-    lazy, _ = lwc.decode(stream, level=level, compensate=False)
+    lazy, _ = lwc.decode(stream, level=level, shrinkage_compensation=False)
     assert lazy.shape == vertices.shape and not np.array_equal(lazy, vertices)
-    assert np.array_equal(lwc.decode(stream, compensate=False).vertices, lwc.decode(stream).vertices)
+    assert np.array_equal(lwc.decode(stream, shrinkage_compensation=False).vertices, lwc.decode(stream).vertices)
     early, _ = lwc.decode(stream[: len(stream) // 3])
     assert 0 < len(early) < len(torus()[0])
 
@@ -124,7 +124,7 @@ def test_arrays_of_any_type_and_layout_are_taken():
         (lambda: lwc.decode(lwc.encode(*torus())[:20]), "NoMesh"),
         (lambda: lwc.decode(lwc.encode(*torus()), max_vertices=3), "Limit"),
         (lambda: lwc.decode(lwc.encode(*torus())[:-1] + b"\0"), "Checksum"),
-        (lambda: lwc.encode(*torus(), quantization=31), "Option"),
+        (lambda: lwc.encode(*torus(), quantization_bits=31), "Option"),
         (lambda: lwc.encode(*torus(), descriptor="magic"), "Option"),
         (lambda: lwc.encode([[0, 0, 0]], [[0, 0, 0]]), "NoTriangles"),
         (lambda: lwc.encode([[0, 0, 0]], [[0, 0, 1]]), "IndexOutOfRange"),
@@ -162,29 +162,29 @@ def square():
     vertices = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
     faces = np.array([[0, 1, 2], [0, 2, 3]])
     uv = np.array([[0, 0], [1, 0], [1, 1], [0.5, 0.5], [0.75, 0.25]], np.float32)
-    return vertices, faces, lwc.Attribute(uv, "corner", "texcoord", set=2, indices=[0, 1, 2, 3, 4, -1])
+    return vertices, faces, lwc.Attribute(uv, "corner", "texcoord", set_index=2, indices=[0, 1, 2, 3, 4, -1])
 
 
 def test_attributes_of_every_domain_come_back():
     vertices, faces, uv = square()
     attributes = {
         "heat": [1.5, 2.5, 3.5, 4.5],
-        "rgb": lwc.Attribute(np.arange(12, dtype=np.uint8).reshape(4, 3), kind="color", normalized=True),
+        "rgb": lwc.Attribute(np.arange(12, dtype=np.uint8).reshape(4, 3), semantic="color", normalized=True),
         "uv": uv,
         "part": lwc.Attribute(["left", "right"], "face", "group"),
         "number": lwc.Attribute(np.array([-7, 70000], np.int64), "face"),
         "n": lwc.Attribute(np.tile([0, 0, 1.0], (2, 3, 1)), "corner", "normal"),
     }
-    stream = lwc.encode(vertices, faces, attributes=attributes, lossless=True, keep_order=True, uv_bits=16)
+    stream = lwc.encode(vertices, faces, attributes=attributes, lossless=True, keep_order=True, texcoord_bits=16)
     mesh = lwc.decode(stream)
     assert np.array_equal(mesh.vertices, vertices) and np.array_equal(mesh.faces, faces)
     assert list(mesh.attributes) == list(attributes)
     found = mesh.attributes
     assert found["heat"].elements().shape == (4,) and found["heat"].domain == "vertex"
     assert np.allclose(found["heat"].elements(), attributes["heat"], atol=1e-3)
-    assert found["rgb"].values.dtype == np.uint8 and (found["rgb"].kind, found["rgb"].normalized) == ("color", True)
+    assert found["rgb"].values.dtype == np.uint8 and (found["rgb"].semantic, found["rgb"].normalized) == ("color", True)
     assert np.array_equal(found["rgb"].elements(), attributes["rgb"].values)
-    assert (found["uv"].kind, found["uv"].set, found["uv"].values.dtype) == ("texcoord", 2, np.float32)
+    assert (found["uv"].semantic, found["uv"].set_index, found["uv"].values.dtype) == ("texcoord", 2, np.float32)
     assert np.allclose(found["uv"].elements(-1), uv.elements(-1), atol=1e-4)
     assert list(found["uv"].indices[-1:]) == [-1] and found["uv"].elements(-1)[5, 0] == -1
     assert list(found["part"].elements()) == ["left", "right"]
@@ -196,7 +196,7 @@ def test_attributes_of_every_domain_come_back():
 def test_attributes_are_there_at_every_level():
     vertices, faces = torus()
     colour = ((np.sin(3 * vertices) + 1) * 120).astype(np.uint8)
-    stream = lwc.encode(vertices, faces, attributes={"c": lwc.Attribute(colour, kind="color")})
+    stream = lwc.encode(vertices, faces, attributes={"c": lwc.Attribute(colour, semantic="color")})
     decoder = lwc.Decoder()
     for at in range(0, len(stream), 500):
         if decoder.push(stream[at : at + 500]):
@@ -234,7 +234,7 @@ def test_options_reach_the_encoder():
         (lwc.Attribute([1.0], indices=[0, 0, 0, -2]), "Attribute"),
         (lwc.Attribute([1, 2, 3, 2**40]), None),
         (lwc.Attribute([1, 2, 3, 4], "edge"), None),
-        (lwc.Attribute([1, 2, 3, 4], kind="taste"), None),
+        (lwc.Attribute([1, 2, 3, 4], semantic="taste"), None),
         (lwc.Attribute([1j, 2, 3, 4]), None),
     ],
 )

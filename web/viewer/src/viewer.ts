@@ -179,9 +179,9 @@ function setVisible(isVisible: boolean): void {
   if (places) places.visible = isVisible;
 }
 
-const history: { milliseconds: number; bytes: number; vertices: number; faces: number }[] = [];
+const history: { milliseconds: number; bytes: number; vertices: number; triangles: number }[] = [];
 function counts({ bytes, pass }: Refinement) {
-  return { bytes, vertices: pass.vertices, faces: pass.faces };
+  return { bytes, vertices: pass.vertices, triangles: pass.triangles };
 }
 
 // --- The scrubber: any prefix of the bytes that have come -------------------------------------------
@@ -259,9 +259,9 @@ function facts(): void {
   setFact('bytes', bytes.toLocaleString('en'));
   setFact('share', `${((100 * bytes) / info.totalBytes).toFixed(1)} %`);
   setFact('vertices', pass.vertices.toLocaleString('en'));
-  setFact('faces', pass.faces.toLocaleString('en'));
+  setFact('triangles', pass.triangles.toLocaleString('en'));
   setFact('level', `${pass.level} of ${info.finestLevel}`);
-  setFact('bits', `${pass.precision} of ${info.precision}`);
+  setFact('bits', `${pass.quantizationBits} of ${info.quantizationBits}`);
   const db = quality[passesDone - 1];
   setFact('db', db !== undefined && db !== null ? `${db.toFixed(1)} dB` : shown.isComplete ? 'exact' : '–');
   drawChart();

@@ -57,9 +57,9 @@ fn row_at(attribute: &Attribute, vertex: u32, corner: usize) -> u32 {
     let element = match attribute.domain {
         Domain::Vertex => vertex as usize,
         Domain::Corner => corner,
-        Domain::Face => corner / 3,
+        Domain::Triangle => corner / 3,
     };
-    attribute.row(element).map_or(NONE, |row| row as u32)
+    attribute.entry(element).map_or(NONE, |row| row as u32)
 }
 
 impl Drawing {
@@ -93,10 +93,10 @@ impl Drawing {
         let mut order: Vec<u32> = (0..num_triangles as u32).collect();
         let Some(scene) = &attributes.scene else { return order };
         let num_meshes = scene.exponents.len();
-        let which = attributes.list.iter().find(|a| a.name == "scene mesh" && a.domain == Domain::Face);
+        let which = attributes.list.iter().find(|a| a.name == "scene mesh" && a.domain == Domain::Triangle);
         // What is of no mesh comes last and is not drawn.
         let part = |t: u32| {
-            let number = which.map_or(Some(0.0), |a| a.number(a.row(t as usize)?, 0));
+            let number = which.map_or(Some(0.0), |a| a.number(a.entry(t as usize)?, 0));
             number.map_or(num_meshes, |number| (number as usize).min(num_meshes))
         };
         order.sort_by_key(|&t| part(t));
@@ -146,7 +146,7 @@ fn number(attribute: &Attribute, row: u32, k: usize) -> f32 {
 fn color(attribute: &Attribute, row: u32, is_linear: bool) -> [u16; 4] {
     std::array::from_fn(|k| {
         let value = (k < attribute.num_components).then(|| attribute.number(row as usize, k)).flatten();
-        let one = attribute.values.scalar_type().map_or(1.0, |scalar| scalar.one());
+        let one = attribute.values.component_type().map_or(1.0, |scalar| scalar.one());
         let divisor = if attribute.is_normalized { 1.0 } else { one };
         let share = value.map_or(1.0, |value| (value / divisor).clamp(0.0, 1.0));
         let light = if is_linear || k == 3 { share } else { linear(share) };

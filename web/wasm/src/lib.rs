@@ -159,7 +159,9 @@ pub extern "C" fn normals(handle: u32) -> *const f32 {
 /// Grid cells, n × 3.
 #[unsafe(no_mangle)]
 pub extern "C" fn cells(handle: u32) -> *const i32 {
-    with(handle, |slot| slot.mesh().map_or(std::ptr::null(), |mesh| mesh.cells().as_ptr().cast()))
+    with(handle, |slot| {
+        slot.mesh().map_or(std::ptr::null(), |mesh| mesh.quantized_positions().as_ptr().cast())
+    })
 }
 
 /// Vertex indices of the triangles, m × 3.

@@ -82,7 +82,7 @@ impl Slot {
             shading.restart();
         }
         self.report.clear();
-        self.report.extend([kind(update.pass.kind), update.pass.level, update.pass.precision]);
+        self.report.extend([kind(update.pass.kind), update.pass.level, update.pass.quantization_bits]);
         self.report.extend([self.decoder.passes_done() as u32 - 1]);
         self.report.extend([update.vertices.start, update.vertices.end]);
         self.report.extend([update.new_triangles.start, update.new_triangles.end]);
@@ -115,7 +115,7 @@ impl Slot {
         if end < count {
             return false;
         }
-        let step = info.side() / f64::from(1_u32 << mesh.precision());
+        let step = info.side() / f64::from(1_u32 << mesh.quantization_bits());
         let shading = self.shading.as_mut();
         shading.is_none_or(|shading| shading.advance(&self.positions, mesh.triangles(), step, left))
     }
@@ -134,11 +134,11 @@ impl Slot {
 
     fn fill_info(&mut self) {
         let Some(info) = self.decoder.info().filter(|_| self.info.is_empty()) else { return };
-        self.info.push(f64::from(info.precision()));
+        self.info.push(f64::from(info.quantization_bits()));
         self.info.extend(info.origin());
         self.info.extend([info.side(), info.total_bytes() as f64]);
         for pass in info.passes() {
-            let counts = [kind(pass.kind), pass.level, pass.precision, pass.vertices, pass.faces];
+            let counts = [kind(pass.kind), pass.level, pass.quantization_bits, pass.vertices, pass.triangles];
             self.info.extend(counts.map(f64::from));
             self.info.extend([pass.bytes as f64, pass.end as f64]);
         }

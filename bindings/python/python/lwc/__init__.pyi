@@ -19,7 +19,7 @@ class EncodeError(ValueError):
 class Pass(TypedDict):
     kind: str
     level: int
-    precision: int
+    quantization_bits: int
     vertices: int
     faces: int
     bytes: int
@@ -27,14 +27,14 @@ class Pass(TypedDict):
 
 class AttributeInfo(TypedDict):
     name: str
-    kind: str
-    set: int
+    semantic: str
+    set_index: int
     domain: str
     components: int
     bits: int
 
 class Info(TypedDict):
-    precision: int
+    quantization_bits: int
     origin: tuple[float, float, float]
     side: float
     levels: int
@@ -50,7 +50,7 @@ def encode(
     *,
     attributes: dict[str, Attribute | ArrayLike] | None = None,
     descriptor: str | None = None,
-    quantization: int | None = None,
+    quantization_bits: int | None = None,
     levels: int | None = None,
     rings: int | None = None,
     radius: float | None = None,
@@ -59,7 +59,7 @@ def encode(
     optimize: str | None = None,
     steps_per_edge: float | None = None,
     normal_bits: int | None = None,
-    uv_bits: int | None = None,
+    texcoord_bits: int | None = None,
     color_bits: int | None = None,
     generic_bits: int | None = None,
     profile: str | None = None,
@@ -73,7 +73,7 @@ def decode(
     stream: bytes,
     *,
     level: int | None = None,
-    compensate: bool = True,
+    shrinkage_compensation: bool = True,
     max_memory: int | None = None,
     max_vertices: int | None = None,
     max_levels: int | None = None,
@@ -83,7 +83,7 @@ def decode_scene(
     stream: bytes,
     *,
     level: int | None = None,
-    compensate: bool = True,
+    shrinkage_compensation: bool = True,
     max_memory: int | None = None,
     max_vertices: int | None = None,
     max_levels: int | None = None,
@@ -94,7 +94,7 @@ def info(stream: bytes) -> Info | None: ...
 class Update:
     kind: str
     level: int
-    precision: int
+    quantization_bits: int
     vertices: int
     faces: int
     end: int
@@ -107,7 +107,7 @@ class Decoder:
         self,
         *,
         level: int | None = None,
-        compensate: bool = True,
+        shrinkage_compensation: bool = True,
         max_memory: int | None = None,
         max_vertices: int | None = None,
         max_levels: int | None = None,

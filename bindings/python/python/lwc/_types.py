@@ -10,19 +10,19 @@ import numpy as np
 
 @dataclass(eq=False)
 class Attribute:
-    """A table of values, and which element has which row of it.
+    """A table of values, and which entry of it each element has.
 
-    ``values``: rows × components (one component: rows), numbers of 8, 16 or 32 bits, float64, or names. Of corners
-    also faces × 3 × components. ``indices``: the row of each element, -1 for none; ``None``: element k has row k.
-    ``domain``: what has a value, ``vertex``, ``corner`` (element 3 f + i is corner i of face f) or ``face``. ``kind``:
-    ``normal``, ``texcoord``, ``color``, ``material``, ``group``, ``object`` or ``generic``. ``set``: of texture
-    coordinates and colours, which of several. ``normalized``: integers are fractions of the largest of their type.
+    ``values``: entries × components (one component: entries), numbers of 8, 16 or 32 bits, float64, or names. Of corners
+    also faces × 3 × components. ``indices``: the entry of each element, -1 for none; ``None``: element k has entry k.
+    ``domain``: what has a value, ``vertex``, ``corner`` (element 3 f + i is corner i of face f) or ``face``.
+    ``semantic``: ``normal``, ``texcoord``, ``color``, ``material``, ``group``, ``object`` or ``generic``. ``set_index``: of
+    texture coordinates and colours, which of several. ``normalized``: integers are fractions of the largest of their type.
     """
 
     values: Any
     domain: str = "vertex"
-    kind: str = "generic"
-    set: int = 0
+    semantic: str = "generic"
+    set_index: int = 0
     normalized: bool = False
     indices: Any = None
 
@@ -47,7 +47,7 @@ class Attribute:
         return np.asarray(self.values).dtype.kind in "USO"
 
     def _table(self) -> list[str] | np.ndarray:
-        """Names, or rows × components of a type that a stream holds."""
+        """Names, or entries × components of a type that a stream holds."""
         if self._is_named():
             return [str(name) for name in np.asarray(self.values, dtype=object).ravel()]
         values = np.asarray(self.values)
