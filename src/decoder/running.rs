@@ -269,7 +269,7 @@ fn at_end<T>(result: Result<Option<T>, Malformed>, coder: &impl BitCoder) -> Res
     }
 }
 
-/// Goes on copying `from` behind the end of `to`; true once all is there.
+/// Continues to append `from` to `to`; true once all of it is there.
 fn copy_some<T: Copy>(from: &[T], to: &mut Vec<T>, work: &mut WorkBudget, change: impl Fn(T) -> T) -> bool {
     while to.len() < from.len() && work.take(1) {
         let end = from.len().min(to.len() + SWEPT_PER_UNIT);

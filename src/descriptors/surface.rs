@@ -39,7 +39,7 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// `None` if l̄ vanishes beside the coordinates, or there are no edges.
+    /// `None` if l̄ vanishes compared with the coordinates, or there are no edges.
     ///
     /// Vertices keep their order if they are `in_order`: those near each other in memory are so in space.
     pub(super) fn new(
@@ -190,7 +190,7 @@ pub(super) fn mean_edge_length(mesh: &TriMesh) -> f64 {
     let Some((low, high)) = bounding_box(mesh, &triangles) else {
         return 0.0;
     };
-    // Squares then overflow nowhere, and vanish only beside coordinates 2^1000 times larger.
+    // Squares then overflow nowhere, and vanish only against coordinates 2^1000 times larger.
     let shift = 500 - exponent(low.abs().max(high.abs()).max_element());
     let positions = scaled_positions(mesh, shift);
     let adjacency = Adjacency::new(positions.len(), &triangles);

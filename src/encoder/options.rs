@@ -19,7 +19,7 @@ pub struct EncodeOptions {
     pub window: Window,
     /// Factor of the radius from each level to the next coarser one. Default 1.5.
     pub growth: f64,
-    /// Attributes that the descriptor sees beside positions, if it is pca or pca-qem. Default none.
+    /// Attributes that the descriptor uses in addition to positions, if it is pca or pca-qem. Default none.
     pub descriptor_attributes: Vec<FeatureChoice>,
     /// Bits per coordinate, 1 to 30. Default 12.
     pub quantization: u32,

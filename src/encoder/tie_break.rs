@@ -1,5 +1,5 @@
-//! What tells vertices and triangles apart that lie in the same place: the values of their attributes, as a decoder
-//! will have them.
+//! What distinguishes vertices and triangles at the same position: the values of their attributes, as a
+//! decoder will have them.
 
 use super::attributes::{Elements, quantise};
 use super::options::EncodeOptions;

@@ -3,7 +3,7 @@
 //! First all vertices look at their neighbours for some rounds. What that leaves equal is told apart by splitting
 //! classes (Paige and Tarjan, *Three partition refinement algorithms*, 1987; McKay, *Practical graph isomorphism*,
 //! 1981): a vertex is marked, and only where a class of equal vertices comes apart the neighbours are looked at
-//! again. So equal pieces cost what they have of faces, however many lie at one place.
+//! again. So equal pieces cost as much as they have faces, however many are at one position.
 
 use super::tie_break::mix;
 use crate::mesh::CornersAt;
@@ -202,7 +202,7 @@ impl<'a> Classes<'a> {
         }
     }
 
-    /// Makes what a class has from `place` on a class of its own.
+    /// Makes the part of a class from `place` on a separate class.
     fn split_off(&mut self, first: u32, place: u32) {
         let end = std::mem::replace(&mut self.ends[first as usize], place);
         self.ends[place as usize] = end;
@@ -254,7 +254,7 @@ impl<'a> Classes<'a> {
 mod tests {
     use super::*;
 
-    /// What it costs to tell all vertices apart, beside the vertices and corners there are.
+    /// The cost of telling all vertices apart, relative to the number of vertices and corners.
     fn work(codes: Vec<u128>, triangles: &[[u32; 3]]) -> f64 {
         let size = codes.len() + 3 * triangles.len();
         let (mut order, work) = Ties::new(codes, triangles).resolve_counting();

@@ -1,5 +1,5 @@
 //! What the profile *max* adds to mixed bits (`format/SPEC.md`, section 6.3): each value of the first contexts
-//! has weights of its own, and corrects the probability that comes out.
+//! has its own weights, and corrects the resulting probability.
 
 use super::context_mixer::{Counter, WeightSet};
 use super::range_coder::PROBABILITY_ONE;
@@ -13,7 +13,7 @@ pub(super) const MOST: usize = 3;
 const CAUTION: f32 = 4.0;
 /// Weight a context starts with.
 pub(super) const INITIAL_WEIGHT: f32 = 0.25;
-/// Say of the weights of one value beside those of the set.
+/// Share of the weights of one value, relative to those of the set.
 const SHARE: f32 = 0.3;
 /// They learn so many times as fast.
 const EAGERNESS: f32 = 2.0;
@@ -27,7 +27,7 @@ const LAST_PLACE: f32 = 15.99;
 const FIRST_AGE: u32 = 12;
 const OLDEST_AGE: u32 = 250;
 
-/// No bit has come with this value of a context.
+/// No bit has been coded with this value of a context.
 const NONE: u32 = u32::MAX;
 
 /// Specialists for the values of the first contexts of a bit.

@@ -25,7 +25,7 @@ pub(crate) mod stream {
 const SOME_VERTICES: u32 = 1000;
 const MANY_VERTICES: u32 = 8000;
 
-/// The stream that stands for each, in a pass that brings so many vertices.
+/// The stream that each stream shares in a pass that adds so many vertices.
 fn merged(vertices: u32) -> [u8; stream::COUNT] {
     use stream::{GROW, IN_PATCH, SYMBOLS};
     std::array::from_fn(|i| {

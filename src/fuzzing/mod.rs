@@ -35,8 +35,9 @@ pub fn decode(data: &[u8]) {
     check_stream(&stream_from(data));
 }
 
-/// Chunks that are moved, doubled, left out, exchanged, renamed or changed are that, too. The first byte counts the changes,
-/// three bytes each; a stream follows. Checksums, sizes, and what announces them are mended, so that damage reaches deep.
+/// Chunks that are moved, doubled, left out, exchanged, renamed or changed are that, too. The first byte
+/// counts the changes, three bytes each; a stream follows. Checksums, sizes and the index of trailing chunks
+/// are repaired, so that damage reaches deep.
 pub fn rearrange(data: &[u8]) {
     let Some((&head, rest)) = data.split_first() else { return };
     let Some((changes, stream)) = rest.split_at_checked(3 * usize::from(head % 16)) else { return };

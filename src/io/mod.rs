@@ -118,7 +118,7 @@ impl Format {
     }
 
     /// The format that the ending of `path` names, in any case; a further `.zst` is looked past.
-    /// `None` if the ending is none of ours.
+    /// `None` if the ending is not one of ours.
     pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
         format_and_compression(path.as_ref()).map(|(format, _)| format)
     }

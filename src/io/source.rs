@@ -175,7 +175,7 @@ impl<'a> Source<'a> {
         true
     }
 
-    /// Puts a piece behind the buffer.
+    /// Appends a piece to the buffer.
     fn read_more(&mut self) -> bool {
         if self.is_at_end {
             return false;

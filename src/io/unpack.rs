@@ -16,7 +16,7 @@ use std::{
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// How many bytes a `.zst` file may unpack to for each of its own, beyond [`ReadOptions::free_bytes`].
+    /// How many bytes each byte of a `.zst` file may unpack to, beyond [`ReadOptions::free_bytes`].
     /// Default: 1000. Meshes have 2 to 30, and zstd goes up to 32,768.
     pub max_ratio: u64,
     /// Bytes that any `.zst` file may unpack to. Default: 256 MiB.
@@ -107,7 +107,7 @@ impl Unpacker {
     }
 
     /// # Errors
-    /// If more has come out than may.
+    /// If more was unpacked than is allowed.
     fn check(&self) -> Result<(), ReadError> {
         let packed = self.decoder.get_ref().get_ref().num_bytes;
         let most = packed.saturating_mul(self.options.max_ratio).max(self.options.free_bytes);

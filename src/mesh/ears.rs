@@ -108,7 +108,7 @@ impl Iterator for Corners {
 /// A hole that is closed ear by ear.
 pub(crate) struct Hole {
     /// Corners left, counter-clockwise: what they are called, and their valence less any constant. No valence is as large
-    /// as what stands behind the last one.
+    /// as the filler after the last one.
     names: Bytes,
     valences: Bytes,
     count: usize,
@@ -193,7 +193,7 @@ impl Hole {
         (usize::from(self.names.get(place)), self.valences.get(place))
     }
 
-    /// Cuts an ear off: the corners beside it get an edge more.
+    /// Cuts an ear off: the corners next to it get one more edge.
     #[inline(always)]
     pub(crate) fn cut(&mut self, ear: Ear) {
         let [before, after] = self.beside(ear.place);

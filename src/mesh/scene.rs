@@ -1,4 +1,4 @@
-//! Where the meshes of a scene stand.
+//! The instances of the meshes of a scene.
 
 /// A mesh in its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,6 @@ pub const IDENTITY: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0],
 pub struct SceneTable {
     /// Of each mesh: its own coordinates times 2 to this power are those of the stream.
     pub exponents: Vec<i8>,
-    /// Where meshes stand.
+    /// The instances of the meshes.
     pub instances: Vec<Instance>,
 }

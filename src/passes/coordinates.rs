@@ -1,4 +1,4 @@
-//! Wavelet coefficients: where each odd vertex lies, relative to its prediction
+//! Wavelet coefficients: where each odd vertex is, relative to its prediction
 //! (`format/SPEC.md`, section 7.4).
 
 use super::coding_context::CodingContext;

@@ -1,12 +1,12 @@
-//! The order of a file (`format/SPEC.md`, section 7.9): which vertex and which triangle comes next, told
-//! by what lies beside the last ones.
+//! The order of a file (`format/SPEC.md`, section 7.9): which vertex and which triangle comes next,
+//! named by what is next to the last ones.
 
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::entropy::range_coder::BitCoder;
 use crate::mesh::{CornersAt, TriMesh};
 
-/// Where the vertices and triangles of a mesh stand in the file.
+/// The places of the vertices and triangles of a mesh in the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Order {
     /// The vertex that comes at each place.

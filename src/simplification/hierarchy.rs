@@ -56,7 +56,7 @@ pub(crate) struct Descent<'a> {
 }
 
 impl<'a> Descent<'a> {
-    /// Goes down from `surface`; the vertices `glued` always stay.
+    /// Goes down from `surface`; the stitched vertices `glued` always stay.
     pub(crate) fn new(surface: Surface, geometry: Geometry<'a>, settings: Settings, glued: BitVec) -> Self {
         let memory = ErrorMemory::new(&surface, geometry.positions);
         let anchors = Anchors::new(&surface, glued);

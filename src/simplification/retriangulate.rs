@@ -1,4 +1,4 @@
-//! Which triangles close the hole of a removed vertex: those that lie closest to what was there, or
+//! Which triangles close the hole of a removed vertex: those that are closest to what was there, or
 //! those that are cheaper to code if they are not much worse.
 //!
 //! Departs from section 6 of the paper, which collapses along the shortest legal edge: measured by the

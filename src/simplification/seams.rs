@@ -183,7 +183,7 @@ impl Seams {
     }
 
     /// The vertex of `star` has gone: notes in `record` what its faces had, and gives rows to the triangles of the
-    /// hole, which stand in the star's first faces. `ears` as in [`SurfaceEditor::remove`].
+    /// hole, which are in the star's first faces. `ears` as in [`SurfaceEditor::remove`].
     pub(crate) fn remove(&mut self, star: &Star, ears: &[usize], record: &mut LevelRecord) {
         if self.is_empty() {
             return;

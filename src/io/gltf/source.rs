@@ -1,4 +1,4 @@
-//! The bytes of a file: the container, and the buffers inside and beside it.
+//! The bytes of a file: the container, and the buffers inside and next to it.
 
 use super::json::Document;
 use crate::io::{MAX_FILE_BYTES, Place, ReadError, text::quoted};

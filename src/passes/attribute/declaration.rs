@@ -48,7 +48,7 @@ pub(crate) struct Declaration {
 pub(crate) struct Declarations {
     pub(crate) list: Vec<Declaration>,
     pub(crate) material_libraries: Arc<[String]>,
-    /// Per pass; 0 behind refinements, which bring no elements.
+    /// Per pass; 0 after refinements, which add no elements.
     pub(crate) bytes: Vec<u32>,
 }
 
