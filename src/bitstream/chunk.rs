@@ -25,7 +25,7 @@ fn checksum(bytes: &[u8], payload: usize) -> u32 {
     u32::from(!crc)
 }
 
-/// Kinds of chunks. Lower case: may be skipped by who does not know it.
+/// Kinds of chunks. Lower case: decoders that do not know it may skip it.
 pub(crate) mod kind {
     pub(crate) const HEADER: u8 = b'H';
     pub(crate) const PROVENANCE: u8 = b'p';
@@ -78,7 +78,7 @@ pub(crate) enum Frame<'a> {
     BadLength,
     /// A pass that the table does not name next.
     OutOfPlace,
-    /// A whole chunk; `intact` tells whether its checksum holds.
+    /// A whole chunk; `intact` is whether its checksum is right.
     Chunk { kind: u8, payload: &'a [u8], size: usize, intact: bool },
 }
 
@@ -139,7 +139,7 @@ pub(crate) fn pass_size(length: u32) -> u64 {
     1 + u64::from(length) + checksum_bytes(length as usize) as u64
 }
 
-/// Bytes of a chunk that is no pass, with a payload of `length` bytes.
+/// Bytes of a chunk that is not a pass, with a payload of `length` bytes.
 pub(crate) fn other_size(length: u32) -> u64 {
     pass_size(length) + varint_size(length) as u64
 }

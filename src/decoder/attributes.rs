@@ -95,7 +95,7 @@ impl AttributeDecoder {
         let Some(pending) = &self.state.pending else { return self.collect(&self.state.layers) };
         let has_begun = pending.coder.is_some();
         let cut = if has_begun || cut.len() < 5 { &[] } else { cut };
-        // A payload that is nonsense has its error when it is complete; until then it tells nothing.
+        // A nonsense payload gives its error when it is complete; until then it says nothing.
         let known = self.state.clone().guessed(mesh, cut).or_else(|| self.state.clone().guessed(mesh, &[]));
         self.collect(&known.as_ref().unwrap_or(&self.state).layers)
     }
@@ -206,7 +206,7 @@ fn collect(declaration: &Declaration, layer: &Layer) -> Attribute {
     }
 }
 
-/// Checks the bytes of values against what the passes bring.
+/// Checks the bytes of values against what the passes add.
 pub(super) fn check_density(declarations: &Declarations, passes: &[PassInfo]) -> Result<(), &'static str> {
     let num_channels: u64 = declarations.list.iter().map(|d| d.num_channels() as u64).sum();
     for (pass, &bytes) in passes.iter().zip(&declarations.bytes) {

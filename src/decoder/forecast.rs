@@ -9,7 +9,7 @@ use crate::mesh::Domain;
 use crate::passes::attribute::Declarations;
 use crate::passes::cost::{self, Counts};
 
-/// Units of work that may be done by the time that so many bytes of the stream have been read.
+/// Units of work that are allowed once that many bytes of the stream have been read.
 pub(super) fn allowed(limits: &Limits, bytes: u64) -> u64 {
     limits.max_work.unwrap_or(cost::earned(bytes))
 }

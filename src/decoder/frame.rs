@@ -11,7 +11,7 @@ use crate::limits::Limits;
 use crate::mesh::{Domain, ScalarType, SceneTable, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
 
-/// What a stream says of itself before its first pass.
+/// What a stream says about itself before its first pass.
 #[derive(Clone, Debug)]
 pub struct StreamInfo {
     pub(super) grid: Grid,
@@ -24,7 +24,7 @@ pub struct StreamInfo {
     pub(super) work: u64,
 }
 
-/// What a stream says of one of its attributes.
+/// What a stream says about one of its attributes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct AttributeInfo {
@@ -181,7 +181,7 @@ impl StreamInfo {
     /// come yet. Nothing is decoded.
     ///
     /// # Errors
-    /// If the bytes are no stream, or damaged before the table ends.
+    /// If the bytes are not a stream, or are damaged before the table ends.
     pub fn read(bytes: &[u8]) -> Result<Option<Self>, DecodeError> {
         let limits = Limits { max_work: Some(u64::MAX), ..Limits::default() };
         let mut decoder = super::Decoder::new(limits);
@@ -303,7 +303,8 @@ impl FrameReader {
         self.buffer.capacity() as u64
     }
 
-    /// Bytes of memory held at most while so many more bytes come in: the buffer may move to a larger place.
+    /// The most bytes of memory held while that many more bytes come in: the buffer may move to a larger
+    /// place.
     pub(super) fn memory_with(&self, more: usize) -> u64 {
         let needed = self.buffer.len().saturating_add(more);
         let moved = if needed > self.buffer.capacity() { self.grown_for(needed) } else { 0 };

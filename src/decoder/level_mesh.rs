@@ -49,7 +49,8 @@ impl<'a> LevelMesh<'a> {
         self.cells
     }
 
-    /// The middle of a vertex's cell in model units: on the surface that was encoded, but for the bits that have not come.
+    /// The middle of a vertex's cell in model units: on the surface that was encoded, except for the bits not
+    /// received yet.
     ///
     /// # Panics
     /// If there is no such vertex.

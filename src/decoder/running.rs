@@ -46,7 +46,7 @@ enum Stage {
     Places(Box<Placement<'static>>),
     /// Connectivity of a split.
     Walk(PausedWalk),
-    /// Room for what a split brings: the longest arrays are copied part by part.
+    /// Room for what a split adds: the longest arrays are copied part by part.
     Triangles(Patches, Vec<[u32; 3]>),
     Opposite(Patches, Vec<u32>),
     /// Stars from this patch on.

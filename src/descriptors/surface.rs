@@ -21,7 +21,8 @@ pub(super) struct Vertex {
     pub(super) normal: DVec3,
 }
 
-/// Surfaces with so many vertices have their tables made one after the other: both at once take too much memory.
+/// The tables of surfaces with at least this many vertices are made one after the other: both at once take
+/// too much memory.
 const MANY_VERTICES: usize = 1 << 20;
 
 /// The input of every descriptor. Vertices are renumbered so that neighbours are near in memory.

@@ -254,7 +254,7 @@ fn table(attribute: &Attribute, used: &[u32]) -> Option<Coding> {
     (rows.len() / n <= MAX_TABLE).then_some(Coding::Table { rows })
 }
 
-/// What tells rows of a table apart: a name, or the bits of numbers.
+/// What distinguishes rows of a table: a name, or the bits of numbers.
 #[derive(PartialEq, Eq, Hash)]
 enum Key<'a> {
     Name(&'a str),

@@ -69,13 +69,13 @@ impl Signatures {
         }
     }
 
-    /// What tells a triangle apart that begins with a corner.
+    /// What distinguishes a triangle that begins with a corner.
     pub(super) fn triangle(&self, corner: u32) -> u64 {
         let corners = turns(corner).map(|c| self.corners[c as usize]);
         corners.into_iter().fold(self.faces[(corner / 3) as usize], |hash, c| mix(hash ^ c))
     }
 
-    /// What a corner tells the vertex at it.
+    /// What a corner passes to its vertex.
     pub(super) fn corner(&self, corner: u32) -> u64 {
         mix(self.triangle(corner))
     }

@@ -1,4 +1,4 @@
-//! What follows the last pass: everything of the mesh that the surface on the grid does not tell.
+//! What follows the last pass: everything about the mesh that the surface on the grid does not contain.
 
 use super::canonical_order::Ordered;
 use super::number_format::cheapest_scale;
@@ -92,7 +92,7 @@ pub(super) struct Exact<'a> {
     pub(super) source: &'a [u32],
     /// Vertices of the mesh that follow those of the surface.
     pub(super) loose: &'a [u32],
-    /// First corners of the triangles that are no part of the surface, in order.
+    /// First corners of the triangles that are not part of the surface, in order.
     pub(super) loose_corners: &'a [u32],
     pub(super) values: ExactValues<'a>,
     pub(super) options: &'a EncodeOptions,

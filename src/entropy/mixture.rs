@@ -15,7 +15,7 @@ pub(crate) struct Mixture {
 }
 
 impl Mixture {
-    /// One expert alone, who says 0.
+    /// A single expert, which predicts 0.
     pub(crate) fn around_zero(scale: f32) -> Self {
         let weight = Lanes([1.0, 0.0, 0.0, 0.0]);
         Self { centre: Lanes::splat(0.0), sharpness: Lanes::splat(1.0 / scale), weight }

@@ -15,7 +15,7 @@ const CAUTION: f32 = 4.0;
 pub(super) const INITIAL_WEIGHT: f32 = 0.25;
 /// Share of the weights of one value, relative to those of the set.
 const SHARE: f32 = 0.3;
-/// They learn so many times as fast.
+/// They learn this many times as fast.
 const EAGERNESS: f32 = 2.0;
 
 /// Steps between the log-odds that are corrected one by one, and their width.
@@ -33,7 +33,7 @@ const NONE: u32 = u32::MAX;
 /// Specialists for the values of the first contexts of a bit.
 #[derive(Clone)]
 pub(super) struct Specialists {
-    /// Index of the specialist of each value, made when it first has a say.
+    /// Index of the specialist of each value, made when it is first used.
     of_slot: Vec<u32>,
     list: Vec<Specialist>,
     first: Specialist,
@@ -49,7 +49,7 @@ struct Specialist {
     corrections: [Counter; STEPS + 1],
 }
 
-/// What the specialists of up to [`MOST`] contexts say of a bit.
+/// What the specialists of up to [`MOST`] contexts say about a bit.
 pub(super) struct Opinion {
     n: usize,
     specialists: [usize; MOST],
@@ -81,7 +81,7 @@ impl Specialists {
         self.say[age as usize]
     }
 
-    /// Their opinion where the weights of a set say `by_set`; `slots` are those of all contexts.
+    /// Their prediction where the weights of a set say `by_set`; `slots` are those of all contexts.
     #[inline(never)]
     pub(super) fn judge(
         &mut self,

@@ -44,7 +44,7 @@ impl ReadOptions {
         if is_compressed {
             return Ok((Source::new(Limited::new(Unpacker::new(file, self)?), None), format));
         }
-        // What is no regular file, such as a pipe, does not know how long it is.
+        // Anything but a regular file, such as a pipe, does not know its length.
         let metadata = file.metadata()?;
         let num_bytes = metadata.is_file().then_some(metadata.len());
         if num_bytes.is_some_and(|num_bytes| num_bytes > MAX_FILE_BYTES) {

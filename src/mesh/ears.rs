@@ -1,5 +1,5 @@
 //! The rule by which small holes are closed where the size of a stream counts: the corner of least
-//! valence is cut off first, of several the one with the shortest cut. Encoders make triangles by
+//! valence is cut off first, among several the one with the shortest cut. Encoders make triangles by
 //! it, and both sides ask whether triangles look as if they were made so (`format/SPEC.md`,
 //! section 7.2).
 //!
@@ -7,7 +7,7 @@
 
 /// Most corners of a hole.
 pub(crate) const MAX_CORNERS: usize = 8;
-/// Largest valence that the rule tells apart.
+/// Largest valence that the rule distinguishes.
 pub(crate) const MAX_VALENCE: u32 = 200;
 
 /// A byte for each corner.
@@ -67,7 +67,8 @@ impl Bytes {
     pub(crate) fn corners_with(self, value: u8) -> Corners {
         const LOW: u64 = 0x7f7f_7f7f_7f7f_7f7f;
         let differ = self.0 ^ (u64::from(value) * 0x0101_0101_0101_0101);
-        // Of a byte that is not 0 either the highest bit is set, or what is added to the rest carries into it.
+        // In a byte that is not 0, either the highest bit is set, or what is added to the rest carries into
+        // it.
         Corners(!(((differ & LOW) + LOW) | differ | LOW))
     }
 

@@ -122,7 +122,7 @@ pub(crate) struct Grower<'a> {
     around: Vec<Around>,
     /// Corners that face a directed edge with no triangle beyond it yet.
     open: HashMap<(u32, u32), u32>,
-    /// Of these the ones that are to be looked at, the present one's first. The pivot is the vertex after a gate.
+    /// Those of them that are to be looked at, the current one's first. The pivot is the vertex after a gate.
     gates: VecDeque<u32>,
     models: BaseModels,
     last_tip: Tip,

@@ -37,7 +37,7 @@ enum Tip {
     Coarse(u32),
 }
 
-/// What is known of a base mesh while its vertices are placed.
+/// What is known about a base mesh while its vertices are placed.
 pub(crate) struct Fringe {
     /// For each placed vertex its displacement from the mean of its outlook.
     pub(crate) misses: Vec<Lanes>,

@@ -30,13 +30,13 @@ const LEAST_TRUST: Lanes = Lanes([0.02, 0.02, 0.02, 0.0]);
 pub(super) const TRUST_LEVELS: usize = 16;
 /// Steepest slope of the surface over the two axes coded first that is believed.
 const MAX_SLOPE: f32 = 4.0;
-/// The expert who says that a neighbour's coordinate comes again, and the logarithm of his scale.
+/// The expert that predicts a neighbour's coordinate to repeat, and the logarithm of its scale.
 const REPEATED: usize = 3;
 const REPEATED_LOG_SCALE: f32 = -1.25;
-/// Weight beyond which residuals are counted from him.
+/// Weight beyond which residuals are counted from it.
 const REPEATED_LEADS: f32 = 0.2;
-/// His weights: where they start, as after so many coordinates; the least step and the least weight. Neighbours with the
-/// coordinate that are told apart.
+/// Its weights: where they start, and the number of coordinates that counts for; the least step and the least
+/// weight. The largest number of neighbours with the coordinate that is distinguished.
 const FIRST_REPEATED: Repeated = Repeated { weight: 0.2, count: 5.0 };
 const REPEATED_RATE: f32 = 0.01;
 const LEAST_REPEATED: f32 = 0.02;

@@ -75,7 +75,7 @@ pub(crate) fn code<B: BitCoder>(
     code_some(coder, models, mesh, patches, precision, target, &mut WorkBudget::unlimited()).map(drop)
 }
 
-/// Goes on from the first vertex that has no position; true if all have one, or a cut payload has told what
+/// Goes on from the first vertex that has no position; true if all have one, or a cut payload has given what
 /// it can.
 pub(crate) fn code_some<B: BitCoder>(
     coder: &mut B,

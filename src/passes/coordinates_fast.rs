@@ -16,7 +16,7 @@ const TIP_SHARE: f32 = 0.25;
 /// Expected sizes of residuals that streams of symbols tell apart, by powers of two.
 const CLASSES: usize = stream::NUM_SYMBOLS / 2;
 
-/// What is known of the vertices so far.
+/// What is known about the vertices so far.
 pub(crate) struct Located<'a> {
     pub(crate) positions: &'a mut Vec<[i32; 3]>,
     pub(crate) roughness: &'a mut Vec<[i8; 2]>,

@@ -19,7 +19,8 @@ const REFINE_PER_FACE: u64 = 6;
 const WALK_PER_FACE: u64 = 5;
 /// Units of a split for each face after: stars are made, and looked at.
 const STARS_PER_FACE: u64 = 2;
-/// Units of a split for each vertex it brings: its place is predicted and decoded, which takes longer than a look.
+/// Units of a split for each vertex it adds: its position is predicted and decoded, which takes longer than a
+/// look.
 const PLACE_PER_VERTEX: u64 = 12;
 /// Units of a stitching chunk for each vertex there is: all are sorted by their cells.
 const GLUE_PER_VERTEX: u64 = 4;
@@ -32,7 +33,7 @@ const ORDER_PER_ELEMENT: u64 = 12;
 /// Units of an isolated vertex or a degenerate face, and of what other chunks say about it.
 const LOOSE_EACH: u64 = 4 + EXACT_PER_VERTEX + ORDER_PER_ELEMENT;
 
-/// Units that a stream may take by the end of so many bytes.
+/// Units that a stream may take by the end of this many bytes.
 pub(crate) fn earned(bytes: u64) -> u64 {
     FREE + PER_BYTE * bytes
 }
@@ -76,7 +77,7 @@ pub(crate) fn exact(finest: Counts) -> u64 {
     EXACT_PER_VERTEX * finest.vertices
 }
 
-/// Units of exact values of an attribute that so many elements have.
+/// Units of the exact values of an attribute for this many elements.
 pub(crate) fn values(elements: u64, components: u64) -> u64 {
     (VALUES_PER_ELEMENT + VALUES_PER_COMPONENT * components) * elements
 }
@@ -86,7 +87,7 @@ pub(crate) fn order(finest: Counts) -> u64 {
     ORDER_PER_ELEMENT * (finest.vertices + finest.faces)
 }
 
-/// Units of so many isolated vertices and degenerate faces.
+/// Units of this many isolated vertices and degenerate faces.
 pub(crate) fn loose(count: u64) -> u64 {
     LOOSE_EACH * count
 }

@@ -1,4 +1,4 @@
-//! What is no part of a surface: vertices without triangles, triangles that name a vertex twice
+//! What is not part of a surface: vertices without triangles, triangles that name a vertex twice
 //! (`format/SPEC.md`, section 7.7).
 
 use super::numbers::Numbers;

@@ -15,7 +15,7 @@ pub(crate) struct Order {
     pub(crate) corners: Vec<u32>,
 }
 
-/// Vertices or triangles that are looked at before a number is told in full.
+/// Vertices or triangles that are considered before a number is coded in full.
 const MOST_CANDIDATES: usize = 24;
 /// Places back whose neighbours are candidates.
 const DEPTH: usize = 6;
@@ -36,7 +36,7 @@ impl Order {
     }
 }
 
-/// Codes the order of a mesh of so many vertices with these triangles, degenerate ones included.
+/// Codes the order of a mesh of this many vertices with these triangles, degenerate ones included.
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     num_vertices: usize,

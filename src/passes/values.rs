@@ -17,7 +17,7 @@ use std::collections::HashMap;
 pub(crate) type Ladders = Option<Vec<Ladder>>;
 
 /// Reads what comes before the coded values: whether those of each attribute follow exactly, and the scales
-/// of their components. Also tells how many bytes that was.
+/// of their components. Also returns how many bytes that was.
 pub(crate) fn read_head(payload: &[u8], list: &[Declaration]) -> Option<(Vec<Ladders>, usize)> {
     let mut reader = Reader::new(payload);
     let mut used = 0;
@@ -104,7 +104,7 @@ pub(crate) struct Truth<'a> {
     pub(crate) loose: &'a dyn Fn(usize) -> Option<&'a [i32]>,
 }
 
-/// What the chunk tells of an attribute.
+/// What the chunk says about an attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Told {
     pub(crate) values: Values,
@@ -312,7 +312,7 @@ impl<'a> ExactRows<'a> {
             let [middle, half] = around(self.declaration, channels, k);
             let target = self.keyed(k, wanted);
             let number = if k == last {
-                // Two components of a direction tell the third but for its sign.
+                // Two components of a direction determine the third except for its sign.
                 let one = length_of_directions(self.declaration);
                 let rest = (0..n).filter(|&j| j != k).map(|j| numbers[j] * numbers[j]);
                 let size = rest.fold(one * one, |left, square| left - square).max(0.0).sqrt();
@@ -329,7 +329,7 @@ impl<'a> ExactRows<'a> {
         Ok(())
     }
 
-    /// The component of a direction that is farthest from 0, of several the first.
+    /// The component of a direction that is farthest from 0, the first among equals.
     fn largest(&self, channels: &[i32]) -> usize {
         let size = |k: usize| around(self.declaration, channels, k)[0].abs();
         (1..self.declaration.num_components).fold(0, |best, k| if size(k) > size(best) { k } else { best })

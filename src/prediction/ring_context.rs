@@ -32,7 +32,7 @@ pub(crate) struct PartOfRing {
     pub(crate) edge: f32,
 }
 
-/// What a neighbourhood says of the vertex inside.
+/// What a neighbourhood says about the vertex inside.
 #[derive(Clone, Copy)]
 pub(crate) struct Outlook {
     /// Mean of the ring.

@@ -23,7 +23,8 @@ pub(crate) struct Consensus {
     pub(crate) width: Lanes,
 }
 
-/// Puts pairs of the first so many values in order, one after the other, without a loop: all of them stay in registers.
+/// Puts pairs of the first values in order, one after the other, without a loop: all of them stay in
+/// registers.
 macro_rules! network {
     ($guesses:ident, [$count:literal] $($i:literal $j:literal),*) => {
         let mut v: [Lanes; $count] = std::array::from_fn(|i| $guesses.values[i]);

@@ -21,7 +21,7 @@ const LEAST_SHARE: f64 = 0.02;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
     pub(crate) descriptor: Descriptor,
-    /// Of the level to come.
+    /// For the next level.
     pub(crate) window: Window,
     /// Factor of the radius from each level to the next coarser one.
     pub(crate) growth: f64,

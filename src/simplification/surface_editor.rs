@@ -71,7 +71,7 @@ impl SurfaceEditor {
         }
     }
 
-    /// Forgets the neighbours that were; `rings` are those of all vertices.
+    /// Forgets the former neighbours; `rings` are those of all vertices.
     pub(crate) fn forget(&mut self, rings: &Rings, vertices: &[u32]) {
         for (&v, place) in vertices.iter().zip(0..) {
             let bits = rings.of(place).iter().map(|&u| bit(vertices[u as usize]));

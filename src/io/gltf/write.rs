@@ -268,7 +268,7 @@ struct Writer {
     materials: Vec<Value>,
     /// What else there is about materials.
     lists: Map<String, Value>,
-    /// Materials are told apart by their names.
+    /// Materials are identified by their names.
     material_of: HashMap<String, usize>,
     report: WriteReport,
 }

@@ -28,7 +28,7 @@ const NUM_SYMBOLS: u32 = FULL as u32 + 4;
 const FULL_AFTER_ZERO: i32 = 2;
 const NUM_SYMBOLS_AFTER_ZERO: u32 = 6;
 
-/// After so many differences that are no multiple of the last one, the last one is replaced.
+/// After this many differences that are not a multiple of the last one, the last one is replaced.
 const MAX_EXTREMES: u32 = 3;
 
 /// Decodes times of version 2 and forgets them.

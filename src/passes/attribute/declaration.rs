@@ -1,4 +1,4 @@
-//! What a stream says of its attributes before it has any values (`format/SPEC.md`, section 4.5).
+//! What a stream says about its attributes before it has any values (`format/SPEC.md`, section 4.5).
 
 use super::octahedron::Octahedron;
 use crate::mesh::{Domain, MAX_COMPONENTS, ScalarType, Semantic, Values};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// Most attributes of a stream.
 pub(crate) const MAX_ATTRIBUTES: usize = 64;
-/// Values that one byte of payload may bring: encoders pad, so that a small stream cannot ask for much memory.
+/// Values that one byte of payload may add: encoders pad, so that a small stream cannot ask for much memory.
 pub(crate) const MAX_VALUES_PER_BYTE: u64 = 1024;
 /// Most bits of a channel.
 pub(crate) const MAX_BITS: u32 = 30;

@@ -66,7 +66,7 @@ impl View {
     }
 }
 
-/// What is known of one channel before it is coded.
+/// What is known about one channel before it is coded.
 #[derive(Clone, Copy, Default)]
 struct Outlook {
     mean: f32,
@@ -138,7 +138,7 @@ impl NumberModels {
             let guess = self.guess(place, class, &outlook, by_ring, errors);
             let expected = guess.expectation(origin, place, class, &outlook, by_ring);
             let value = self.residuals.code(coder, &expected, wanted);
-            // What a cut payload does not tell is as expected.
+            // What a cut payload does not contain is as predicted.
             let value = if coder.is_guessing() { Some(guess.likeliest(origin, self.range)) } else { value };
             let value = value.filter(|value| (self.range[0]..=self.range[1]).contains(value))?;
             let truth = value.wrapping_sub(origin) as f32;
