@@ -65,7 +65,7 @@ class Reader:
 
 
 def f32(x, single=struct.Struct("f")):
-    """Rounds to binary32. One operation in binary64, rounded so, is that operation in binary32."""
+    """Rounds to binary32. One operation in binary64, rounded in this way, is that operation in binary32."""
     try:
         return single.unpack(single.pack(x))[0]
     except OverflowError:
@@ -73,7 +73,7 @@ def f32(x, single=struct.Struct("f")):
 
 
 class Single(float):
-    """A binary32 number: what a sum, product or quotient with one gives is rounded to one."""
+    """A binary32 number. Sums, products and quotients with one are rounded to binary32."""
 
     __slots__ = ()
 
@@ -150,7 +150,7 @@ def cross(a, b):
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-def way(p, q):
+def vector(p, q):
     return (Single(q[0] - p[0]), Single(q[1] - p[1]), Single(q[2] - p[2]))
 
 
@@ -262,13 +262,13 @@ class RangeDecoder:
         require(self.position <= len(self.payload) + 8, "a pass needs more bytes than it has")
 
 
-# 6.5 Streams
+# 6.6 Streams
 
 RAW, FACES, GROW, SYMBOLS, STREAMS = 0, 1, 21, 45, 69
 
 
 def unzip(data):
-    """A zstd frame, by whatever knows that format here."""
+    """Unpacks a zstd frame with whatever is installed here."""
     try:
         from compression import zstd
 
@@ -629,7 +629,7 @@ class Base:
                 gate = self.gates.popleft()
                 if mesh.across[gate] == NONE:
                     self.grow(gate)
-        require(len(self.faces) == num_vertices, "the base mesh has fewer vertices than announced")
+        require(len(self.faces) == num_vertices, "the base mesh has fewer vertices than the table of passes says")
         mesh.check_base(num_vertices)
         place_base(coder, mesh)
 
@@ -719,7 +719,7 @@ class Base:
         return left_open
 
     def new_vertex(self):
-        require(len(self.faces) < self.num_vertices, "more vertices than announced")
+        require(len(self.faces) < self.num_vertices, "more vertices than the table of passes says")
         self.faces.append(0)
         self.bound.append(0)
         return len(self.faces) - 1
@@ -759,7 +759,7 @@ class PlacingOrder:
 
 
 def place_base(coder, mesh):
-    models, residuals = GuessModels(), Residuals()
+    models, residuals = PredictionModels(), Residuals()
     num_vertices, limit = len(mesh.corner_of), 1 << mesh.precision
     jump = edge = Single(limit) / 8
     last = [limit // 2] * 3
@@ -781,7 +781,7 @@ def place_base(coder, mesh):
             jump += (((a + b) + c) * (ONE / 3) - jump) * 0.2
         else:
             cell, mesh.roughness[v] = decode_vertex(coder, models, residuals, around, limit)
-            misses[v] = sub(way(around.origin, cell), around.straight_mean)
+            misses[v] = sub(vector(around.origin, cell), around.straight_mean)
             edge += (around.length * 2 - edge) * 0.1
         mesh.cell[v] = last = cell
         order.place(v)
@@ -822,7 +822,7 @@ NOT, FITS, UNKNOWN = range(3)
 
 
 class Polygon:
-    """Corners from the gate on: vertex, edges, triangles of the patch."""
+    """Corners from the gate on. Each has a vertex, its edges, and the triangles of the patch there."""
 
     def __init__(self, corners, cursor):
         self.corners, self.cursor = corners, cursor
@@ -877,10 +877,10 @@ class Connectivity:
                     c = mesh.across[self.gates.popleft()]
                     if c != NONE and self.state[c // 3] == UNDECIDED:
                         self.decide(c, False)
-        require(len(self.patches) == count, "a level has fewer vertices than announced")
+        require(len(self.patches) == count, "a level has fewer vertices than the table of passes says")
 
     def begin(self):
-        require(len(self.patches) < self.count, "a level has more vertices than announced")
+        require(len(self.patches) < self.count, "a level has more vertices than the table of passes says")
         self.patches.append(Patch())
         return self.patches[-1]
 
@@ -1001,12 +1001,12 @@ class Connectivity:
         return 3 if across == NONE else self.state[across // 3]
 
     def square(self, u, v):
-        w = way(self.mesh.cell[u], self.mesh.cell[v])
+        w = vector(self.mesh.cell[u], self.mesh.cell[v])
         return dot(w, w)
 
     def cos(self, t, u, v):
         cell = self.mesh.cell
-        a, b = way(cell[t], cell[u]), way(cell[t], cell[v])
+        a, b = vector(cell[t], cell[u]), vector(cell[t], cell[v])
         length = root(dot(a, a) * dot(b, b))
         return dot(a, b) / length if length else ZERO
 
@@ -1106,7 +1106,7 @@ def restore(mesh, patch):
 
 
 def tangent_plane(normal):
-    """Axes in coding order, and what the first two count in the last one."""
+    """Axes in coding order, and how much the first two count in the last one."""
     x, y, z = (abs(a) for a in normal)
     axes = (1, 2, 0) if x > y and x > z else (0, 2, 1) if y > z else (0, 1, 2)
     slope = [ZERO] * 3
@@ -1128,7 +1128,7 @@ class Neighbourhood:
         self.origin = mesh.cell[vertices[0]]
 
         def point(u):
-            p = way(self.origin, mesh.cell[u])
+            p = vector(self.origin, mesh.cell[u])
             return add(p, (0.5, 0.5, 0.5)) if shift(u) else p
 
         self.ring = [point(u) for u in vertices]
@@ -1190,12 +1190,12 @@ class Neighbourhood:
 
 
 class PartOfRing(Neighbourhood):
-    """What is placed of the ring of a base vertex."""
+    """The placed part of the ring of a base vertex."""
 
     def __init__(self, mesh, corners, ring, is_placed, misses, edge):
         self.closed = False
         self.origin = mesh.cell[ring[0]]
-        self.ring = [way(self.origin, mesh.cell[u]) for u in ring]
+        self.ring = [vector(self.origin, mesh.cell[u]) for u in ring]
         self.fine, tips = [], []
         zero = (ZERO, ZERO, ZERO)
         normal, oldest, first = zero, zero, NONE
@@ -1204,7 +1204,7 @@ class PartOfRing(Neighbourhood):
             if across == NONE or not all(is_placed[u] for u in (a, b, mesh.vertex(across))):
                 continue
             tips.append(mesh.vertex(across))
-            pa, pb, pt = (way(self.origin, mesh.cell[u]) for u in (a, b, tips[-1]))
+            pa, pb, pt = (vector(self.origin, mesh.cell[u]) for u in (a, b, tips[-1]))
             self.fine.append(sub(add(pa, pb), pt))
             normal = add(normal, cross(sub(pa, pb), sub(pt, pb)))
             if first == NONE or max(a, b) < first:
@@ -1276,7 +1276,7 @@ def around_refined(mesh, v):
 
 
 class Filter:
-    """Of three features, or of five for attributes (8.4)."""
+    """A filter of three features, or of five for attributes (8.4)."""
 
     def __init__(self, weights=(0.5, 0.35, 0.0)):
         self.weights = weights
@@ -1284,7 +1284,7 @@ class Filter:
 
     @staticmethod
     def sum(a, b):
-        """From the first to the last."""
+        """Sums from the first to the last."""
         sum_ = a[0] * b[0]
         for x, y in zip(a[1:], b[1:]):
             sum_ = sum_ + x * y
@@ -1312,12 +1312,12 @@ class Filter:
 
 def consensus(around, affine):
     n = len(around.ring)
-    guesses = [affine]
+    simple = [affine]
     if around.closed and n % 2 == 0 and n <= 16:
         opposite = ((around.ring[i], around.ring[i + n // 2]) for i in range(n // 2))
-        guesses += [around.frame(scaled(add(p, q), 0.5)) for p, q in opposite]
-    guesses += [around.frame(p) for p in around.fine]
-    return [agree(sorted(g[a] for g in guesses[:16])) for a in range(3)]
+        simple += [around.frame(scaled(add(p, q), 0.5)) for p, q in opposite]
+    simple += [around.frame(p) for p in around.fine]
+    return [agree(sorted(g[a] for g in simple[:16])) for a in range(3)]
 
 
 def agree(v):
@@ -1330,15 +1330,15 @@ def agree(v):
     return median, spread, mode, v[a + w - 1] - v[a]
 
 
-# 8.3 Guesses
+# 8.3 Predictions of coordinates
 
 
-class GuessModels:
+class PredictionModels:
     def __init__(self):
         start = [Single(w) for w in (-0.4, 0.1, 0.2, 0.3, 0.1, 0.0, 0.3)]
         self.filters = [[Filter(), Filter()] for _ in range(7)]
         self.scales = [[list(start) for _ in range(3)] for _ in range(3)]
-        self.trust = [[[ONE / 3] * 3 for _ in range(16)] for _ in range(3)]
+        self.expert = [[[ONE / 3] * 3 for _ in range(16)] for _ in range(3)]
         self.repeated = [[[[Single(0.2), 5] for _ in range(16)] for _ in range(5)] for _ in range(3)]
 
 
@@ -1363,7 +1363,7 @@ def learn_scales(mixture, logs, scales, cues, y):
 
 
 def shares_of(mixture, distances):
-    """How well each expert did, beside the others."""
+    """How well each expert did, compared with the others."""
     score = []
     for d, s, w in zip(distances, mixture.sharpness, mixture.weight):
         r = 1 + (d * d + ONE / 12) * (s * s)
@@ -1372,7 +1372,7 @@ def shares_of(mixture, distances):
     return [one * f for one in score]
 
 
-class VertexGuess:
+class VertexPrediction:
     def __init__(self, models, around):
         self.models, self.around = models, around
         self.position, self.errors = [ZERO] * 3, [ZERO] * 3
@@ -1389,7 +1389,7 @@ class VertexGuess:
     def by(self, roughness):
         return log2(exp2(roughness) * self.around.length + 0.35)
 
-    def guess(self, kind):
+    def predict(self, kind):
         around, models = self.around, self.models
         self.kind, self.axis = kind, around.axes[kind]
         side, axis = int(kind == 2), self.axis
@@ -1408,15 +1408,15 @@ class VertexGuess:
         scales = models.scales[kind]
         self.logs = [Single(clamp(sum7(w, c), -4.0, 32.0)) for w, c in zip(scales, self.cues)]
         self.logs.append(Single(-1.25))
-        self.trust = models.trust[kind][level(self.by_spread, 1, 16)]
+        self.expert = models.expert[kind][level(self.by_spread, 1, 16)]
         self.again = models.repeated[kind][min(count, 4)][level(log2(distance + 0.35), 1, 16)]
         centres = [c - self.known for c in (self.affine[axis], median, mode)] + [repeated]
         self.mixture = Mixture(
             [Single(clamp(c, -1e9, 1e9)) for c in centres],
             [exp2(-log) * (ONE / 0.85) for log in self.logs],
-            self.trust + [self.again[0]],
+            self.expert + [self.again[0]],
         )
-        peaks = [w * s for w, s in zip(self.trust, self.mixture.sharpness)]
+        peaks = [w * s for w, s in zip(self.expert, self.mixture.sharpness)]
         self.best = 3 if self.again[0] > Single(0.2) else peaks.index(max(peaks))
         self.log_scale = self.logs[self.best]
 
@@ -1447,8 +1447,8 @@ class VertexGuess:
         self.again[0] = weight if weight > Single(0.02) else Single(0.02)
         g = 1 / max(1 - hit, Single(1e-6))
         for i in range(3):
-            trust = self.trust[i] + (shares[i] * g - self.trust[i]) * (Single(0.02) * (1 - hit))
-            self.trust[i] = trust if trust > Single(0.02) else Single(0.02)
+            expert = self.expert[i] + (shares[i] * g - self.expert[i]) * (Single(0.02) * (1 - hit))
+            self.expert[i] = expert if expert > Single(0.02) else Single(0.02)
         self.position[axis] = y
         self.errors[self.kind] = distances[0]
 
@@ -1462,10 +1462,10 @@ class VertexGuess:
 
 
 def decode_vertex(coder, models, residuals, around, limit):
-    g = VertexGuess(models, around)
+    g = VertexPrediction(models, around)
     cell = [0, 0, 0]
     for kind in range(3):
-        g.guess(kind)
+        g.predict(kind)
         contexts = (
             level(g.by_tips, 2, 16) * 16 + level(g.by_ring, 1, 16),
             (around.kind * 8 + level(g.by_known, 1, 8)) * 4 + level(g.by_spread, 0.5, 4),
@@ -1491,12 +1491,12 @@ def decode_coordinates(coder, models, residuals, mesh, patches):
 # 7.5 Refinement
 
 
-# 7.6 Coordinates from streams
+# 7.10 Coordinates from streams
 
 
 def decode_plain(coder, mesh, patch, ring):
     origin, d, closed = mesh.cell[ring[0]], len(ring), patch.open == CLOSED
-    point = [way(origin, mesh.cell[u]) for u in ring]
+    point = [vector(origin, mesh.cell[u]) for u in ring]
     share = 1 / Single(d)
     total = over = normal = (ZERO, ZERO, ZERO)
     k, rough = ZERO, [0, 0]
@@ -1506,9 +1506,9 @@ def decode_plain(coder, mesh, patch, ring):
         rough = [a + b for a, b in zip(rough, mesh.roughness[ring[i]])]
         tip = patch.tips[(patch.start() + d - 1 + i) % len(patch.tips)]
         if tip != NONE and (closed or i > 0):
-            over, k = add(over, sub(add(before, p), way(origin, mesh.cell[tip]))), k + 1
+            over, k = add(over, sub(add(before, p), vector(origin, mesh.cell[tip]))), k + 1
     mean = scaled(total, share)
-    guess = add(mean, scaled(sub(over, scaled(mean, k)), 0.25 * share))
+    predicted = add(mean, scaled(sub(over, scaled(mean, k)), 0.25 * share))
     x, y, z = (abs(a) for a in sub(point[d // 2], mean))
     log_length = log2(x + y + z + 1)
     classes = [int(clamp(log_length + Single(r) * (share * 0.125) + 2, 0.0, 11.0)) for r in rough]
@@ -1516,12 +1516,12 @@ def decode_plain(coder, mesh, patch, ring):
     missed, cell, sizes = [ZERO] * 3, [0] * 3, [0, 0]
     for axis in axes:
         kind = int(axis == axes[2])
-        g = guess[axis] - dot(slope, missed) if kind else guess[axis]
+        g = predicted[axis] - dot(slope, missed) if kind else predicted[axis]
         expected = origin[axis] + int(clamp(math.floor(g + 0.5), -1e9, 1e9))
         difference = coder.difference(SYMBOLS + 2 * classes[kind] + kind)
         cell[axis] = expected + difference
         require(0 <= cell[axis] < 1 << mesh.precision, "a vertex lies outside the grid")
-        missed[axis] = Single(cell[axis] - origin[axis]) - guess[axis]
+        missed[axis] = Single(cell[axis] - origin[axis]) - predicted[axis]
         sizes[kind] += abs(difference) >> 1 - kind
     mesh.cell.append(cell)
     mesh.roughness.append([int(clamp((log2(Single(s) + 0.5) - log_length) * 8, -120.0, 120.0)) for s in sizes])
@@ -1535,9 +1535,9 @@ def refine(coder, models, mixed, mesh):
         return
     for v, cell in enumerate(mesh.cell):
         around = around_refined(mesh, v)
-        g = VertexGuess(models, around)
+        g = VertexPrediction(models, around)
         for kind in range(3):
-            g.guess(kind)
+            g.predict(kind)
             low = cell[g.axis]
             middle = Single(low - around.origin[g.axis]) + 0.5
             mixture = seen_from(g.mixture, middle, False)
@@ -1555,7 +1555,7 @@ def refine(coder, models, mixed, mesh):
             g.learn(cell[g.axis])
 
 
-# 6.5 Numbers and 7.6 to 7.9: what stands beside the passes
+# 6.5 Numbers, and 7.6 to 7.9 and 7.12: trailing chunks
 
 
 class Numbers:
@@ -1576,11 +1576,11 @@ class Numbers:
         return -n if n > 0 and self.bits.code(coder, (context, 432)) else n
 
 
-class Glue:
-    """7.6; root holds the first vertex that is the same."""
+class Stitching:
+    """Section 7.6. `root` has the first of the vertices that are the same."""
 
     def __init__(self):
-        self.glued, self.picks, self.root = Plain(), Numbers(), []
+        self.stitched, self.picks, self.root = Plain(), Numbers(), []
 
     def decode(self, payload, mesh):
         coder, first = RangeDecoder(payload), len(self.root)
@@ -1593,7 +1593,7 @@ class Glue:
                     corners, closed = mesh.fan(mesh.corner_of[v])
                     near = {mesh.vertex(turn(c)) for c in corners for turn in (next_, prev)}
                     known = max([1 + (self.root[u] != u) for u in near if u < v], default=0)
-                    if self.glued.code(coder, (min(len(there), 3) - 1) * 6 + 3 * (not closed) + known):
+                    if self.stitched.code(coder, (min(len(there), 3) - 1) * 6 + 3 * (not closed) + known):
                         back = self.picks.code(coder, 0) if len(there) > 1 else 0
                         root = there[max(len(there) - 1 - back, 0)]
                 self.root.append(root)
@@ -1603,7 +1603,7 @@ class Glue:
 
 
 class Whole:
-    """Section 9.1: cells and triangles of joined and loose vertices, exact positions, order."""
+    """Section 9.1: the assembled mesh: cells, triangles, exact positions, order."""
 
     def __init__(self, grid, mesh, root):
         self.grid, self.mesh = grid, mesh
@@ -1614,28 +1614,28 @@ class Whole:
             else:
                 place.append(len(self.cell))
                 self.cell.append(list(cell))
-        joined = [[place[v] for v in t] for t in mesh.triangle]
-        self.triangle = [t for t in joined if len(set(t)) == 3]
+        stitched = [[place[v] for v in t] for t in mesh.triangle]
+        self.triangle = [t for t in stitched if len(set(t)) == 3]
         self.position = self.order = None
         self.told = []
-        # Vertices and faces of the surface that these are.
+        # The vertices and faces of the surface that these stand for.
         self.vertex_source = [v for v in range(len(place)) if v >= len(root) or root[v] == v]
-        self.face_source = [f for f, t in enumerate(joined) if len(set(t)) == 3]
+        self.face_source = [f for f, t in enumerate(stitched) if len(set(t)) == 3]
 
-    def loose(self, payload):
-        coder, counts, ways, links = RangeDecoder(payload), Numbers(), Numbers(), Numbers()
+    def additional(self, payload):
+        coder, counts, deltas, links = RangeDecoder(payload), Numbers(), Numbers(), Numbers()
         vertices, faces = counts.code(coder, 0), counts.code(coder, 1)
-        require(vertices + faces <= 64 * (len(payload) + 1), "more is loose than the bytes could hold")
+        require(vertices + faces <= 64 * (len(payload) + 1), "more isolated vertices and degenerate faces than the bytes could hold")
         cell, first = [0, 0, 0], 0
         for _ in range(vertices):
-            cell = [cell[a] + ways.signed(coder, a) for a in range(3)]
-            require(all(0 <= c < 1 << self.grid[0] for c in cell), "a loose vertex off the grid")
+            cell = [cell[a] + deltas.signed(coder, a) for a in range(3)]
+            require(all(0 <= c < 1 << self.grid[0] for c in cell), "an isolated vertex off the grid")
             self.cell.append(cell)
         for _ in range(faces):
             first += links.signed(coder, 0)
             second = first + links.signed(coder, 1)
             face = [first, second, second + links.signed(coder, 2)]
-            require(all(0 <= v < len(self.cell) for v in face), "a loose face names no vertex")
+            require(all(0 <= v < len(self.cell) for v in face), "a degenerate face names no vertex")
             self.triangle.append(face)
         coder.check_end()
 
@@ -1689,7 +1689,7 @@ class Whole:
         self.order = vertices.order, place, corners
 
     def sources(self, domain):
-        """Of each joined element the element of the surface and, of a corner, its joined vertex."""
+        """For each stitched element the element of the surface and, for a corner, its stitched vertex."""
         if domain == OF_VERTICES:
             return [(v, 0) for v in self.vertex_source]
         if domain == OF_FACES:
@@ -1697,11 +1697,11 @@ class Whole:
         return [(3 * f + k, v) for f, t in zip(self.face_source, self.triangle) for k, v in enumerate(t)]
 
     def count(self, domain):
-        """Joined and loose elements."""
+        """The number of elements: those of the surface and the additional ones."""
         return (len(self.cell), 3 * len(self.triangle), len(self.triangle))[domain]
 
     def values(self, payload, attributes):
-        """Section 7.12: the bytes of each element's value, or NONE, where they are told."""
+        """Section 7.12: the bytes of each element's value, or NONE, where the chunk gives them."""
         reader = Reader(payload)
         scales = []
         for one in attributes:
@@ -1713,17 +1713,17 @@ class Whole:
         self.told = []
         for one, codes in zip(attributes, scales):
             told, sources = {}, self.sources(one.declared.domain)
-            exact = codes is not None and ExactRows(one.declared, codes)
+            exact = codes is not None and ExactValues(one.declared, codes)
             if exact:
                 for i, (element, w) in enumerate(sources):
-                    row = one.row[element]
-                    told[i] = exact.decode(coder, NONE if row == NONE else one.rows[row], (row, w))
-            missing, ways, last = Plain(), Numbers(), [max(one.declared.low, 0)] * one.declared.channels
+                    entry = one.entry_of[element]
+                    told[i] = exact.decode(coder, NONE if entry == NONE else one.entries[entry], (entry, w))
+            missing, deltas, last = Plain(), Numbers(), [max(one.declared.low, 0)] * one.declared.channels
             for i in range(len(sources), self.count(one.declared.domain)):
                 channels = NONE
                 if not (one.declared.has_missing and missing.code(coder, 0)):
-                    channels = last = [c + ways.signed(coder, k) for k, c in enumerate(last)]
-                    require(all(one.declared.low <= c <= one.declared.high for c in channels), "a loose value")
+                    channels = last = [c + deltas.signed(coder, k) for k, c in enumerate(last)]
+                    require(all(one.declared.low <= c <= one.declared.high for c in channels), "the value of an additional element")
                 if exact:
                     told[i] = exact.decode(coder, channels, None)
                 else:
@@ -1739,8 +1739,8 @@ class Whole:
             domain = values.declared.domain
             told = {}
             for i, (element, _) in enumerate(self.sources(domain)):
-                row = values.row[element]
-                told[i] = NONE if row == NONE else values.declared.packed(values.rows[row])
+                entry = values.entry_of[element]
+                told[i] = NONE if entry == NONE else values.declared.packed(values.entries[entry])
             if self.told:
                 told.update(self.told[k])
             if not self.order:
@@ -1815,15 +1815,15 @@ class ExactAxis:
         bits = coder.raw(32) << 32 | coder.raw(32) if self.wide else coder.raw(32)
         return struct.unpack(*(("<d", struct.pack("<Q", bits)) if self.wide else ("<f", struct.pack("<I", bits))))[0]
 
-    def nearest(self, coder, expected, ways):
-        """The number that is so many keys from the one nearest to what is expected."""
+    def nearest(self, coder, expected, correction):
+        """The number whose key is the nearest key to the expected value plus a correction."""
         if self.off.code(coder, 0):
             return self.off_value(coder)
         if self.steps:
             near = int(clamp(math.floor(expected * self.steps + 0.5), -(2.0**53), 2.0**53)) + (1 << 63)
         else:
             near = self.key(expected)
-        key = near + ways.signed(coder, 0)
+        key = near + correction.signed(coder, 0)
         require(0 <= key < 1 << (64 if self.steps else self.width), "a value that is no number")
         return self.number(key)
 
@@ -1853,18 +1853,18 @@ class ExactAxis:
         return x
 
 
-class ExactRows:
-    """7.12: the values of one attribute."""
+class ExactValues:
+    """Section 7.12: the values of one attribute."""
 
     def __init__(self, declared, codes):
         self.declared = declared
         self.axes = [ExactAxis(TYPES[declared.type] != "f", code) for code in codes]
-        self.given, self.repeated, self.restored, self.ways = Plain(), Plain(), Plain(), Numbers()
+        self.given, self.repeated, self.restored, self.correction = Plain(), Plain(), Plain(), Numbers()
         self.history = self.past = 0
-        self.rows, self.at, self.anywhere = [], {}, {}
+        self.values, self.at, self.anywhere = [], {}, {}
 
     def decode(self, coder, channels, key):
-        """The bytes of a value, or NONE; where the row is known again it is by its number."""
+        """The bytes of a value, or NONE. A value that occurs again is known by its number."""
         coder.check_end()
         declared = self.declared
         letter = TYPES[declared.type]
@@ -1873,7 +1873,7 @@ class ExactRows:
                 return NONE
             size = struct.calcsize("<" + letter)
             bits = [coder.raw(32) << 32 | coder.raw(32) if size == 8 else coder.raw(8 * size) for _ in range(declared.components)]
-            # Bits are kept as they came: those of NaN, too.
+            # Bits are kept as they are, those of NaN too.
             return b"".join(number.to_bytes(size, "little") for number in bits)
         candidates = []
         if key:
@@ -1895,13 +1895,13 @@ class ExactRows:
         return self.add(key, struct.pack("<%d%s" % (declared.components, letter), *value))
 
     def add(self, key, value):
-        self.rows.append(value)
-        return self.note(key, len(self.rows) - 1)
+        self.values.append(value)
+        return self.note(key, len(self.values) - 1)
 
-    def note(self, key, row):
+    def note(self, key, number):
         if key:
-            self.at[key] = self.anywhere[key[0]] = row
-        return self.rows[row]
+            self.at[key] = self.anywhere[key[0]] = number
+        return self.values[number]
 
     def components(self, coder, channels):
         declared = self.declared
@@ -1919,7 +1919,7 @@ class ExactRows:
             value[k] = self.axes[k].decode(coder, NONE, middles[k] - half, middles[k] + half)
         a, b = (value[k] for k in range(3) if k != last)
         expected = math.sqrt(max((one * one - a * a) - b * b, 0.0))
-        value[last] = self.axes[last].nearest(coder, -expected if middles[last] < 0 else expected, self.ways)
+        value[last] = self.axes[last].nearest(coder, -expected if middles[last] < 0 else expected, self.correction)
         require(math.isfinite(value[last]), "a value that is no number")
         return value
 
@@ -1997,7 +1997,7 @@ class Declared:
             self.low, self.high, self.channels = 0, count - 1, 1
 
     def flip(self, s, t):
-        """The place of the direction with the opposite z."""
+        """The channels of the direction with the opposite z."""
         sign = lambda c: -1 if c < 0 else 1
         return (sign(s) * (self.high - abs(t)), sign(t) * (self.high - abs(s)))
 
@@ -2007,14 +2007,14 @@ class Declared:
         length = math.sqrt(float(x * x) + float(y * y) + float(z * z))
         return (x / length, y / length, z / length)
 
-    def value(self, row):
-        """The components that the channels of a row stand for."""
+    def value(self, entry):
+        """The components that the channels of an entry stand for."""
         if self.coding == TABLE:
-            return self.table[row[0]]
+            return self.table[entry[0]]
         if self.coding == UNIFORM:
-            value = [low + q * self.step for low, q in zip(self.minimum, row)]
+            value = [low + q * self.step for low, q in zip(self.minimum, entry)]
         else:
-            value = self.direction(*row)
+            value = self.direction(*entry)
         if self.type >= 6:
             return [f32(x) for x in value] if self.type == 6 else value
         bits = 8 << self.type // 2
@@ -2023,9 +2023,9 @@ class Declared:
             value = [x * high for x in value]
         return [clamp(math.floor(x + 0.5), low, high) for x in value]
 
-    def packed(self, row):
+    def packed(self, entry):
         """The bytes of a value for the checksum of section 9.2."""
-        value = self.value(row)
+        value = self.value(entry)
         if self.type == NAMES:
             name = value[0].encode("utf-8")
             return struct.pack("<I", len(name)) + name
@@ -2033,7 +2033,7 @@ class Declared:
 
 
 def read_attributes(payload):
-    """The attributes and the bytes of the `a` behind each pass."""
+    """The attributes, and the bytes of the `a` after each pass."""
     reader = Reader(payload)
     count = reader.varint()
     require(count <= 64, "too many attributes")
@@ -2046,7 +2046,7 @@ def read_attributes(payload):
 
 
 def check_sizes(declared, sizes, rows):
-    """What `L` says must fit the bytes of `d`."""
+    """What `L` says must agree with the bytes in `d`."""
     channels = sum(one.channels for one in declared)
     require(len(sizes) == len(rows), "attributes of other passes")
     for size, (kind, vertices, _, _) in zip(sizes, rows):
@@ -2090,55 +2090,55 @@ def read_materials(payload):
 
 
 class Around:
-    """What a row is expected from: rows with the ways to them."""
+    """What an entry is predicted from: entries with their displacements."""
 
     def __init__(self):
         self.ring, self.tips, self.triangles, self.repeatable = [], [], [], []
         self.normal = (ZERO, ZERO, ZERO)
         self.closed = self.has_gap = False
 
-    def join(self, row, way_to):
-        if row == NONE:
+    def join(self, entry, displacement):
+        if entry == NONE:
             self.has_gap = True
         else:
-            self.ring.append((row, way_to))
+            self.ring.append((entry, displacement))
 
 
 class Values:
-    """The rows of one attribute, of all elements there are, and the models they are coded with."""
+    """The entries of one attribute for all elements, and the models that code them."""
 
     def __init__(self, declared):
         self.declared = declared
-        self.rows, self.roughness = [], []  # of each row its channels
-        self.row = []  # of each element, or NONE
+        self.entries, self.roughness = [], []  # the channels of each entry
+        self.entry_of = []  # the entry of each element, or NONE
         self.missing, self.inherited, self.has_seam, self.seam, self.symbols = (Plain() for _ in range(5))
         self.repeated, self.history = Mixed(3, 0.4, 255), 0
         self.forecasts = Forecasts(declared)
 
     def decode(self, coder, mesh, patches):
-        """The values that a pass brought; `patches` is NONE for the base mesh."""
+        """The values of what a pass added; `patches` is NONE for the base mesh."""
         self.coder, self.mesh = coder, mesh
         domain, count = self.declared.domain, len(mesh.cell)
         elements = (count, 3 * len(mesh.triangle), len(mesh.triangle))[domain]
-        self.row += [NONE] * (elements - len(self.row))
+        self.entry_of += [NONE] * (elements - len(self.entry_of))
         if patches == NONE and domain == OF_FACES:
             for f in range(elements):
-                self.row[f] = self.decode_row(self.around_face(f, f), False)
+                self.entry_of[f] = self.decode_entry(self.around_face(f, f), False)
             return
         number = count if patches == NONE else len(patches)
         for i, v in enumerate(range(count - number, count)):
             corners, closed = mesh.fan(mesh.corner_of[v])
             patch = NONE if patches == NONE else patches[i]
             if domain == OF_VERTICES:
-                self.row[v] = self.decode_row(self.around_wedge(v, corners, closed), False)
+                self.entry_of[v] = self.decode_entry(self.around_wedge(v, corners, closed), False)
             elif domain == OF_CORNERS:
                 self.decode_corners(v, corners, closed, patch)
             else:
                 self.decode_star_faces(v, corners, patch)
 
     def at(self, c):
-        """The row at a corner."""
-        return self.row[(self.mesh.vertex(c), c, c // 3)[self.declared.domain]]
+        """The entry at a corner."""
+        return self.entry_of[(self.mesh.vertex(c), c, c // 3)[self.declared.domain]]
 
     def plain(self, model, context):
         return model.code(self.coder, context)
@@ -2155,21 +2155,21 @@ class Values:
         for begin, end in zip(bounds, bounds[1:]):
             whole = closed and len(bounds) == 2
             around = self.around_wedge(v, corners[begin:end], whole)
-            row = self.decode_row(around, False)
+            entry = self.decode_entry(around, False)
             for c in corners[begin:end]:
-                self.row[c] = row
+                self.entry_of[c] = entry
         for c, before in exceptions:
-            self.row[c] = self.decode_row(self.around_exception(v, c, before, corners), True)
+            self.entry_of[c] = self.decode_entry(self.around_exception(v, c, before, corners), True)
 
     def inherit(self, v, corners, patch):
-        """Gives the star what the patch had; the corners where that is wrong, with what they would have had."""
+        """Gives the star the entries of the patch. Returns the corners where they are wrong, with those entries."""
         edges, start, is_ear = patch.edges, patch.start(), not patch.faces
         taken = []
         for i in range(len(corners)):
             e = edges[(start + i) % len(edges)]
-            taken.append((self.row[prev(e)], self.row[next_(e)]) if is_ear else (self.row[next_(e)], self.row[prev(e)]))
+            taken.append((self.entry_of[prev(e)], self.entry_of[next_(e)]) if is_ear else (self.entry_of[next_(e)], self.entry_of[prev(e)]))
         for c, (first, second) in zip(corners, taken):
-            self.row[next_(c)], self.row[prev(c)] = first, second
+            self.entry_of[next_(c)], self.entry_of[prev(c)] = first, second
 
         def is_cut_off(i):
             if is_ear or patch.open != CLOSED and i + 1 == len(corners):
@@ -2185,9 +2185,9 @@ class Values:
                 for c, is_second in ((next_(own), False), (prev(own), True)):
                     context = 4 + 3 * (is_second and cut) + self.fit(v, own, c)
                     if not self.plain(self.inherited, context):
-                        exceptions.append((c, self.row[c]))
+                        exceptions.append((c, self.entry_of[c]))
         for c, _ in exceptions:
-            self.row[c] = NONE
+            self.entry_of[c] = NONE
         return exceptions
 
     def fit(self, v, own, c):
@@ -2196,12 +2196,12 @@ class Values:
         if o == NONE or mesh.vertex(o) > v:
             return 2
         outside = next_(o) if mesh.vertex(next_(o)) == mesh.vertex(c) else prev(o)
-        return int(self.row[outside] != self.row[c])
+        return int(self.entry_of[outside] != self.entry_of[c])
 
     def decode_seams(self, v, corners, closed):
         ends = []
         for i in range(0 if closed else 1, len(corners)):
-            before, after = self.row[prev(corners[i - 1])], self.row[next_(corners[i])]
+            before, after = self.entry_of[prev(corners[i - 1])], self.entry_of[next_(corners[i])]
             unknown = self.mesh.vertex(next_(corners[i])) >= v or (before == NONE) != (after == NONE)
             ends.append((i, 2 if unknown else int(before != after)))
         seams = []
@@ -2216,57 +2216,57 @@ class Values:
 
     def decode_star_faces(self, v, corners, patch):
         edges, start = patch.edges, patch.start()
-        taken = [self.row[edges[(start + i) % len(edges)] // 3] for i in range(len(corners))]
-        for c, row in zip(corners, taken):
-            self.row[c // 3] = row
+        taken = [self.entry_of[edges[(start + i) % len(edges)] // 3] for i in range(len(corners))]
+        for c, entry in zip(corners, taken):
+            self.entry_of[c // 3] = entry
         even = len(set(taken)) == 1
         if not self.plain(self.inherited, 10 + even):
-            for c, row in zip(corners, taken):
+            for c, entry in zip(corners, taken):
                 if not self.plain(self.inherited, 12 + even):
-                    around = self.around_face(c // 3, NONE, v, row)
-                    self.row[c // 3] = self.decode_row(around, True)
+                    around = self.around_face(c // 3, NONE, v, entry)
+                    self.entry_of[c // 3] = self.decode_entry(around, True)
 
     # 8.4 Around
 
-    def way_from(self, v, u):
-        return way(self.mesh.cell[v], self.mesh.cell[u])
+    def vector_from(self, v, u):
+        return vector(self.mesh.cell[v], self.mesh.cell[u])
 
     def around_wedge(self, v, corners, closed):
         mesh, around = self.mesh, Around()
         around.closed = closed
         ends = [x for c in corners for x in (next_(c), prev(c))]
         seen = [(mesh.vertex(x), self.at(x)) for x in ends]
-        for i, (u, row) in enumerate(seen):
-            repeats = i > 0 and seen[i - 1] == (u, row) or closed and i == len(seen) - 1 and seen[0] == (u, row)
+        for i, (u, entry) in enumerate(seen):
+            repeats = i > 0 and seen[i - 1] == (u, entry) or closed and i == len(seen) - 1 and seen[0] == (u, entry)
             if u < v and not repeats:
-                around.join(row, self.way_from(v, u))
+                around.join(entry, self.vector_from(v, u))
         for c in corners:
             a, b, o = next_(c), prev(c), mesh.across[c]
-            area = cross(self.way_from(v, mesh.vertex(a)), self.way_from(v, mesh.vertex(b)))
+            area = cross(self.vector_from(v, mesh.vertex(a)), self.vector_from(v, mesh.vertex(b)))
             around.normal = add(around.normal, area)
             if o == NONE or not all(mesh.vertex(x) < v for x in (a, b, o)):
                 continue
-            rows = self.at(a), self.at(b), self.at(o)
-            if NONE not in rows and self.at(prev(o)) == rows[0] and self.at(next_(o)) == rows[1]:
-                around.tips.append((rows[2], self.way_from(v, mesh.vertex(o))))
-                around.triangles.append(rows)
+            entries = self.at(a), self.at(b), self.at(o)
+            if NONE not in entries and self.at(prev(o)) == entries[0] and self.at(next_(o)) == entries[1]:
+                around.tips.append((entries[2], self.vector_from(v, mesh.vertex(o))))
+                around.triangles.append(entries)
         return around
 
     def area(self, f):
         a, b, c = (self.mesh.vertex(3 * f + i) for i in range(3))
-        return cross(self.way_from(a, b), self.way_from(a, c))
+        return cross(self.vector_from(a, b), self.vector_from(a, c))
 
     def around_exception(self, v, c, before, star):
         mesh, around = self.mesh, Around()
         here = mesh.vertex(c)
         own, far = (next_(c), prev(c)) if mesh.vertex(next_(c)) == v else (prev(c), next_(c))
         for x in (own, far):
-            around.join(self.row[x], self.way_from(here, mesh.vertex(x)))
+            around.join(self.entry_of[x], self.vector_from(here, mesh.vertex(x)))
         for o in star:
-            if o != own and self.row[o] == self.row[own]:
+            if o != own and self.entry_of[o] == self.entry_of[own]:
                 for x in (next_(o), prev(o)):
-                    if self.row[x] != NONE and mesh.vertex(x) != here:
-                        around.tips.append((self.row[x], self.way_from(here, mesh.vertex(x))))
+                    if self.entry_of[x] != NONE and mesh.vertex(x) != here:
+                        around.tips.append((self.entry_of[x], self.vector_from(here, mesh.vertex(x))))
         around.repeatable.append(before)
         for turn in (next_, prev):
             d = mesh.swing(c, turn)
@@ -2274,7 +2274,7 @@ class Values:
                 if d in (NONE, c):
                     break
                 if max(mesh.triangle[d // 3]) <= v:
-                    around.repeatable.append(self.row[d])
+                    around.repeatable.append(self.entry_of[d])
                 d = mesh.swing(d, turn)
         around.normal = self.area(c // 3)
         return around
@@ -2282,11 +2282,11 @@ class Values:
     def middle(self, f, seen_from):
         total_ = (ZERO, ZERO, ZERO)
         for u in self.mesh.triangle[f]:
-            total_ = add(total_, self.way_from(seen_from, u))
+            total_ = add(total_, self.vector_from(seen_from, u))
         return scaled(total_, ONE / 3)
 
     def around_face(self, f, known, v=NONE, inherited=None):
-        """In the base mesh the faces below `known` have rows, in a star those without a vertex above v."""
+        """In the base mesh the faces below `known` have entries, in a star those without a vertex above v."""
         mesh, around = self.mesh, Around()
         if inherited is not None:
             around.join(inherited, (ZERO, ZERO, ZERO))
@@ -2295,24 +2295,24 @@ class Values:
         for c in range(3 * f, 3 * f + 3):
             o = mesh.across[c]
             if o != NONE and (o // 3 < known if inherited is None else mesh.vertex(o) <= v):
-                around.join(self.row[o // 3], sub(self.middle(o // 3, seen_from), middle))
+                around.join(self.entry_of[o // 3], sub(self.middle(o // 3, seen_from), middle))
         around.normal = self.area(f)
         return around
 
-    # Rows
+    # Entries
 
-    def decode_row(self, around, is_exception):
+    def decode_entry(self, around, is_exception):
         coder = self.coder
         if self.declared.has_missing:
             context = 0 if not around.has_gap else 1 if around.ring else 2
             if self.plain(self.missing, context):
                 return NONE
         counts, first = collections.Counter(), {}
-        for row in [row for row, _ in around.ring] + [row for row in around.repeatable if row != NONE]:
-            channels = self.rows[row]
+        for entry in [entry for entry, _ in around.ring] + [entry for entry in around.repeatable if entry != NONE]:
+            channels = self.entries[entry]
             if channels in first or len(first) < 16:
                 counts[channels] += 1
-                first.setdefault(channels, row)
+                first.setdefault(channels, entry)
         found = sorted(first, key=lambda channels: -counts[channels])
         for k, channels in enumerate(found[:3]):
             which = k + 3 * is_exception
@@ -2329,10 +2329,10 @@ class Values:
         if self.declared.coding == TABLE:
             channels, roughness = (self.decode_symbol(),), 0
         else:
-            channels, roughness = self.forecasts.decode(coder, around, self.rows, self.roughness)
-        self.rows.append(channels)
+            channels, roughness = self.forecasts.decode(coder, around, self.entries, self.roughness)
+        self.entries.append(channels)
         self.roughness.append(roughness)
-        return len(self.rows) - 1
+        return len(self.entries) - 1
 
     def decode_symbol(self):
         count = self.declared.high + 1
@@ -2345,9 +2345,9 @@ class Values:
         return i
 
     def numbers(self):
-        """For the checksum of rows in section 9.2."""
-        for row in self.row:
-            yield from (0xFFFFFFFF,) if row == NONE else (x & 0xFFFFFFFF for x in self.rows[row])
+        """For the checksum of entries in section 9.2."""
+        for entry in self.entry_of:
+            yield from (0xFFFFFFFF,) if entry == NONE else (x & 0xFFFFFFFF for x in self.entries[entry])
 
 
 # 8.4 Attributes
@@ -2365,10 +2365,10 @@ def lg(x):
 
 
 class Plane:
-    """Weighted points of the ring and the tips in the plane of the surface."""
+    """Weighted points of the ring and of the tips in the plane of the surface."""
 
     def __init__(self, around):
-        self.ways = [p for _, p in around.ring + around.tips]
+        self.displacements = [p for _, p in around.ring + around.tips]
         length = root(dot(around.normal, around.normal))
         n = scaled(around.normal, 1 / length) if length else (ZERO, ZERO, ONE)
         sizes = [abs(x) for x in n]
@@ -2376,8 +2376,8 @@ class Plane:
         e = cross(n, tuple(ONE if i == k else ZERO for i in range(3)))
         e = scaled(e, 1 / root(dot(e, e)))
         g = cross(n, e)
-        x, y = [dot(p, e) for p in self.ways], [dot(p, g) for p in self.ways]
-        self.w = [1 / (dot(p, p) + 0.25) for p in self.ways]
+        x, y = [dot(p, e) for p in self.displacements], [dot(p, g) for p in self.displacements]
+        self.w = [1 / (dot(p, p) + 0.25) for p in self.displacements]
         self.W = total_of(self.w)
         share = 1 / self.W if self.W else ZERO
         self.X = total_of(w * x for w, x in zip(self.w, x)) * share
@@ -2406,7 +2406,7 @@ class Plane:
         return mean - (((a_x * yy - a_y * self.XY) / D) * self.X + ((a_y * xx - a_x * self.XY) / D) * self.Y)
 
     def conformal(self, a, b, sign):
-        """Values of both, what is explained, misfit."""
+        """The values of both channels, what is explained, and the misfit."""
         mean_a, mean_b = self.mean(a), self.mean(b)
         T = self.XX + self.YY
         if not T > 0:
@@ -2424,7 +2424,7 @@ Features = collections.namedtuple("Features", "mean spread median near affine sp
 
 
 class Forecasts:
-    """Expects the channels of new rows, learns from them."""
+    """Predicts the channels of new entries, and learns from them."""
 
     def __init__(self, declared):
         self.declared = declared
@@ -2432,7 +2432,7 @@ class Forecasts:
         weights = (0.3, 0.4, 0.1, 0.0, 0.0)
         self.filters = [[Filter(weights) for _ in range(4)] for _ in range(8)]
         self.scales = [[list(scale) for _ in range(4)] for _ in range(4)]
-        self.trust = [[[ONE / 4] * 4 for _ in range(16)] for _ in range(4)]
+        self.expert = [[[ONE / 4] * 4 for _ in range(16)] for _ in range(4)]
         self.residuals = Residuals()
         self.mirrored, self.last = ZERO, None
         channels = list(range(declared.channels))
@@ -2442,11 +2442,11 @@ class Forecasts:
         self.is_direction = declared.coding == OCTAHEDRAL
         self.is_texture = declared.semantic == TEXCOORD
 
-    def look(self, around, rows):
-        """Whether directions are flipped, and the place of the normal."""
+    def look(self, around, entries):
+        """Whether the view is flipped, and the channels of the normal."""
         if not self.is_direction:
             return False, None
-        z = total_of(f32(self.declared.direction(*rows[row])[2]) for row, _ in around.ring)
+        z = total_of(f32(self.declared.direction(*entries[entry])[2]) for entry, _ in around.ring)
         square = dot(around.normal, around.normal)
         length = root(square)
         if length > 0:
@@ -2460,15 +2460,15 @@ class Forecasts:
         ground = x * k, y * k
         return flipped, self.declared.flip(*ground) if z < 0 else ground
 
-    def decode(self, coder, around, rows, roughness):
+    def decode(self, coder, around, entries, roughness):
         declared = self.declared
-        flipped, ground = self.look(around, rows)
-        view = lambda row: declared.flip(*row) if flipped else row
+        flipped, ground = self.look(around, entries)
+        view = lambda entry: declared.flip(*entry) if flipped else entry
         n = len(around.ring)
         misfit = ZERO
         if n:
-            origin = view(rows[around.ring[0][0]])
-            seen = lambda row: [Single(q - o) for q, o in zip(view(rows[row]), origin)]
+            origin = view(entries[around.ring[0][0]])
+            seen = lambda entry: [Single(q - o) for q, o in zip(view(entries[entry]), origin)]
             features, misfit = self.features(around, seen, origin, ground)
         else:
             width = declared.high - declared.low
@@ -2484,23 +2484,23 @@ class Forecasts:
             class_ = min(max(n, 4), 7) - 4
         else:
             class_ = (5 if around.tips else 4) if n <= 2 else min(n, 4) + 3
-        by_ring = Single(sum(roughness[row] for row, _ in around.ring)) / 8 / n if n else Single(3)
-        row, errors = [0] * declared.channels, []
+        by_ring = Single(sum(roughness[entry] for entry, _ in around.ring)) / 8 / n if n else Single(3)
+        entry, errors = [0] * declared.channels, []
         for k, channel in enumerate(self.order):
             here = ChannelForecast(self, features[channel], k, class_, by_ring, errors, misfit)
             x = here.decode(coder, origin[channel])
             require(declared.low <= x <= declared.high, "a value beyond its range")
             errors.append(here.learn(Single(x - origin[channel])))
-            row[channel] = x
+            entry[channel] = x
         mean_error = total_of(abs(e) for e in errors) / declared.channels
-        self.last = tuple(view(row))
+        self.last = tuple(view(entry))
         return self.last, int(clamp(log2(mean_error + 0.35) * 8, -120, 120))
 
     def features(self, around, seen, origin, ground):
-        """Of each channel, and the misfit."""
+        """The features of each channel, and the misfit."""
         plane = Plane(around)
-        ring, tips = [seen(row) for row, _ in around.ring], [seen(row) for row, _ in around.tips]
-        triangles = [[seen(row) for row in rows] for rows in around.triangles]
+        ring, tips = [seen(entry) for entry, _ in around.ring], [seen(entry) for entry, _ in around.tips]
+        triangles = [[seen(entry) for entry in entries] for entries in around.triangles]
         near = [1 / (root(dot(p, p)) + 0.25) for _, p in around.ring]
         share = ONE / len(ring)
         features = []
@@ -2555,11 +2555,11 @@ class ChannelForecast:
         q = lg(misfit) if models.is_texture and k < 2 else lg(e[1]) if k > 1 else ZERO
         self.cues = [ONE, self.by_spread, by_ring, self.by_fits, self.by_first, q, lg((mean + special) - expected)]
         self.logs = [Single(clamp(sum7(w, self.cues), -4.0, 32.0)) for w in self.scales]
-        self.trust = models.trust[j][level(self.by_spread, 1, 16)]
+        self.expert = models.expert[j][level(self.by_spread, 1, 16)]
         self.mixture = Mixture(
             [Single(clamp(c, -1e9, 1e9)) for c in centre],
             [exp2(-log) * (ONE / 0.85) for log in self.logs],
-            list(self.trust),
+            list(self.expert),
         )
 
     def decode(self, coder, origin):
@@ -2580,8 +2580,8 @@ class ChannelForecast:
         self.filter.learn([f * u for f in self.f], (y - self.features.mean) * u)
         distances = learn_scales(self.mixture, self.logs, self.scales, [self.cues] * 4, y)
         for i, share in enumerate(shares_of(self.mixture, distances)):
-            better = self.trust[i] + (share - self.trust[i]) * 0.02
-            self.trust[i] = better if better > Single(0.02) else Single(0.02)
+            better = self.expert[i] + (share - self.expert[i]) * 0.02
+            self.expert[i] = better if better > Single(0.02) else Single(0.02)
         return -distances[0]
 
 
@@ -2602,7 +2602,7 @@ assert crc16(b"123456789") == 0x906E
 
 
 def chunks(stream, rows):
-    """Kind and payload of every whole chunk. `rows`: those of the passes still to come, once they are known."""
+    """Kind and payload of every whole chunk. `rows` are those of the passes to come, once they are known."""
     require(stream[:3] == b"LWC", "not a stream")
     require(stream[3:4] == b"\x01", "another version")
     reader = Reader(stream)
@@ -2678,28 +2678,28 @@ def position(grid, cell, precision):
     return [o + f / ((1 << full) - 1) * side for o, f in zip(origin, fine)]
 
 
-def read_announced(payload):
-    """Bytes of the glue behind passes, and kinds and bytes of what follows the last."""
+def read_trailing_index(payload):
+    """Bytes of the stitching after passes, and kinds and bytes of what follows the last pass."""
     reader = Reader(payload)
-    glue, trailing = {}, []
+    stitching, trailing = {}, []
     count = reader.varint()
-    require(count <= 4097, "the announced chunks")
+    require(count <= 4097, "the index of trailing chunks")
     for _ in range(count):
         pass_ = reader.varint()
-        require(all(pass_ > other for other in glue), "the announced chunks")
-        glue[pass_] = reader.varint()
+        require(all(pass_ > other for other in stitching), "the index of trailing chunks")
+        stitching[pass_] = reader.varint()
     while not reader.is_empty():
         kind = chr(reader.u8())
         known = kind in "pdntag" or "A" <= kind <= "Z" or kind in [k for k, _ in trailing]
-        require(not known and len(trailing) < 16, "the announced chunks")
+        require(not known and len(trailing) < 16, "the index of trailing chunks")
         trailing.append((kind, reader.varint()))
     stage = [{"i": 0, "x": 1, "v": 1, "o": 2}[kind] for kind, _ in trailing if kind in "ixvo"]
-    require(stage == sorted(stage), "the announced chunks")
-    return glue, trailing
+    require(stage == sorted(stage), "the index of trailing chunks")
+    return stitching, trailing
 
 
 def read_compensation(payload, count):
-    """Section 4.8: both weights after each pass but the last."""
+    """Section 4.8: both weights after each pass except the last."""
     bits = Bits(payload)
     now, weights = [0, 0], []
     for _ in range(count):
@@ -2806,17 +2806,21 @@ def read_table(payload, grid_precision):
 
 
 def decode(stream):
-    """Yields kind, level and mesh after each pass, "shown" and how it is shown if that differs, "values" and the attributes after each pass if there are any; at the end the
-    whole mesh if there is more to it, and "end" with the whole mesh and the attributes if there are any."""
-    grid = rows = mesh = announced = weights = None
-    glue, awaited, whole = Glue(), [], None
+    """Yields kind, level and mesh after each pass.
+
+    If the mesh is shown differently, "shown" and that mesh follow. If there are attributes, "values" and the
+    attributes follow. At the end comes the whole mesh if there is a chunk `t`, and "end" with the whole mesh and
+    the attributes if there are any.
+    """
+    grid = rows = mesh = listed = weights = None
+    stitching, awaited, whole = Stitching(), [], None
     declared, values, known = None, [], set()
     level_, done = 0, 0
-    connectivity, coordinates, refinement = ConnectivityModels(), (GuessModels(), Residuals()), (GuessModels(), Mixed(4, 0.4, 250))
+    connectivity, coordinates, refinement = ConnectivityModels(), (PredictionModels(), Residuals()), (PredictionModels(), Mixed(4, 0.4, 250))
     ahead = []
     for kind, payload in chunks(stream, ahead):
         if awaited and kind == awaited[0][0]:
-            require(len(payload) == awaited.pop(0)[1], "a chunk differs from its announcement")
+            require(len(payload) == awaited.pop(0)[1], "a chunk has another length than listed")
             if kind == "a":
                 coder = RangeDecoder(payload)
                 for one in values:
@@ -2824,19 +2828,19 @@ def decode(stream):
                 coder.check_end()
                 yield "values", level_, values
             elif kind == "g":
-                glue.decode(payload, mesh)
+                stitching.decode(payload, mesh)
             elif kind == "m":
                 read_materials(payload)
             elif kind == "v":
-                whole = whole or Whole(grid, mesh, glue.root)
+                whole = whole or Whole(grid, mesh, stitching.root)
                 require(declared, "values of no attributes")
                 whole.values(payload, values)
             elif kind in "ixo":
-                whole = whole or Whole(grid, mesh, glue.root)
-                {"i": whole.loose, "x": whole.exact, "o": whole.ordered}[kind](payload)
+                whole = whole or Whole(grid, mesh, stitching.root)
+                {"i": whole.additional, "x": whole.exact, "o": whole.ordered}[kind](payload)
         elif kind == "t" and rows is None:
-            require(announced is None, "a chunk out of order")
-            announced = read_announced(payload)
+            require(listed is None, "a chunk out of order")
+            listed = read_trailing_index(payload)
         elif kind == "c" and rows is None:
             require(weights is None, "a chunk out of order")
             weights = payload
@@ -2859,7 +2863,7 @@ def decode(stream):
             rows, precision = read_table(payload, grid[0])
             ahead.extend(rows)
             weights = read_compensation(weights, len(rows) - 1) + [(0, 0)] if weights is not None else None
-            require(all(i < len(rows) for i in (announced or ({}, []))[0]), "glue behind no pass")
+            require(all(i < len(rows) for i in (listed or ({}, []))[0]), "stitching after a pass that does not exist")
             if declared:
                 check_sizes(*declared, rows)
         elif kind in "BSR":
@@ -2872,7 +2876,7 @@ def decode(stream):
                 level_ += 1
                 patches = Connectivity(coder, connectivity, mesh, vertices).patches
                 new_faces = sum(1 if patch.open != CLOSED else 2 for patch in patches)
-                require(new_faces == faces, "a level has other faces than announced")
+                require(new_faces == faces, "the number of new faces differs from the table of passes")
                 for patch in patches:
                     ring = restore(mesh, patch)
                     if is_fast:
@@ -2890,21 +2894,21 @@ def decode(stream):
                 awaited = [("a", declared[1][done - 1])]
             elif values:
                 yield "values", level_, values
-            if announced:
-                awaited += [("g", announced[0][done - 1])] if done - 1 in announced[0] else []
-                awaited += announced[1] if done == len(rows) else []
+            if listed:
+                awaited += [("g", listed[0][done - 1])] if done - 1 in listed[0] else []
+                awaited += listed[1] if done == len(rows) else []
         else:
             require(not "A" <= kind <= "Z", "unsupported chunk %r" % kind)
         if rows and done == len(rows) and not awaited:
-            whole = whole or Whole(grid, mesh, glue.root)
-            if announced:
+            whole = whole or Whole(grid, mesh, stitching.root)
+            if listed:
                 yield "whole", level_, whole
             if values:
                 yield "end", level_, (whole, values)
             return
 
 
-def checksum_of_rows(values):
+def checksum_of_entries(values):
     """Section 9.2."""
     flat = [number for one in values for number in one.numbers()]
     return zlib.crc32(struct.pack("<%dI" % len(flat), *flat))
@@ -2915,7 +2919,7 @@ def lines_of(path):
     meshes, attributes, shows = [], [], 0
     for kind, level_, mesh in decode(path.read_bytes()):
         if kind == "values":
-            attributes.append("%s %d %08x" % (path.name, len(attributes), checksum_of_rows(mesh)))
+            attributes.append("%s %d %08x" % (path.name, len(attributes), checksum_of_entries(mesh)))
             continue
         if kind == "end":
             whole, values = mesh

@@ -1,10 +1,10 @@
-//! What can go wrong, by who can do something about it.
+//! What can go wrong, sorted by who can do something about it.
 
 use thiserror::Error;
 
 /// Why a stream does not decode.
 ///
-/// A stream that ends early is no error: it is a coarser mesh.
+/// A stream that ends early is not an error: it is a coarser mesh.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DecodeError {

@@ -1,4 +1,4 @@
-//! What a decoder may be made to do by a stream it does not trust.
+//! What an untrusted stream may make a decoder do.
 
 use crate::error::DecodeError;
 

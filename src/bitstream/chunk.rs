@@ -9,7 +9,7 @@ pub(crate) const VERSION: u8 = 1;
 /// Payloads of at least this many bytes have the longer checksum.
 const LONG_PAYLOAD: usize = 4000;
 
-/// Bytes of the checksum behind a payload.
+/// Bytes of the checksum after a payload.
 fn checksum_bytes(payload: usize) -> usize {
     if payload < LONG_PAYLOAD { 2 } else { 4 }
 }
@@ -25,7 +25,7 @@ fn checksum(bytes: &[u8], payload: usize) -> u32 {
     u32::from(!crc)
 }
 
-/// Kinds of chunks. Lower case: may be skipped by who does not know it.
+/// Kinds of chunks. Lower case: decoders that do not know it may skip it.
 pub(crate) mod kind {
     pub(crate) const HEADER: u8 = b'H';
     pub(crate) const PROVENANCE: u8 = b'p';
@@ -35,7 +35,7 @@ pub(crate) mod kind {
     pub(crate) const BASE: u8 = b'B';
     pub(crate) const SPLIT: u8 = b'S';
     pub(crate) const REFINE: u8 = b'R';
-    /// Declarations of attributes, and their values behind each pass.
+    /// Declarations of attributes, and their values after each pass.
     pub(crate) const DECLARATIONS: u8 = b'd';
     pub(crate) const ATTRIBUTES: u8 = b'a';
     /// Announces the chunks below.
@@ -54,7 +54,7 @@ pub(crate) mod kind {
     /// Order of the file.
     pub(crate) const ORDER: u8 = b'o';
 
-    /// True if a known kind has its place in front of a pass or directly behind one.
+    /// True if a known kind belongs directly before or after a pass.
     pub(crate) fn is_known_elsewhere(kind: u8) -> bool {
         matches!(kind, PROVENANCE | COMPENSATION | SCENE | DECLARATIONS | ATTRIBUTES | ANNOUNCED | GLUE)
     }
@@ -78,11 +78,11 @@ pub(crate) enum Frame<'a> {
     BadLength,
     /// A pass that the table does not name next.
     OutOfPlace,
-    /// A whole chunk; `intact` tells whether its checksum holds.
+    /// A whole chunk; `intact` is whether its checksum is right.
     Chunk { kind: u8, payload: &'a [u8], size: usize, intact: bool },
 }
 
-/// Kind and payload length of the pass that comes next, as far as the table of passes has come.
+/// Kind and payload length of the next pass, once the table of passes has been read.
 pub(crate) type NextPass = Option<(u8, u32)>;
 
 /// Looks at the chunk that `bytes` begin with.
@@ -139,7 +139,7 @@ pub(crate) fn pass_size(length: u32) -> u64 {
     1 + u64::from(length) + checksum_bytes(length as usize) as u64
 }
 
-/// Bytes of a chunk that is no pass, with a payload of `length` bytes.
+/// Bytes of a chunk that is not a pass, with a payload of `length` bytes.
 pub(crate) fn other_size(length: u32) -> u64 {
     pass_size(length) + varint_size(length) as u64
 }

@@ -1,4 +1,5 @@
-//! The chunks that belong to passes or follow the last one, announced before them (`format/SPEC.md`, section 4.4).
+//! The index of trailing chunks: those that belong to passes or follow the last one (`format/SPEC.md`,
+//! section 4.4).
 
 use super::chunk::kind;
 use super::header::MAX_PASSES;
@@ -9,8 +10,8 @@ use crate::util::bytes::write_varint;
 /// Most chunks after the last pass.
 const MAX_TRAILING: usize = 16;
 
-/// Chunks refer to those of earlier stages: to what lies loose, then the order to all. Others refer to none, and stand
-/// anywhere.
+/// Chunks refer to those of earlier stages: first to isolated vertices and degenerate faces; the order refers
+/// to all. Other chunks refer to none, and may be anywhere.
 fn stage(kind: u8) -> Option<u8> {
     match kind {
         kind::LOOSE => Some(0),
@@ -23,7 +24,7 @@ fn stage(kind: u8) -> Option<u8> {
 /// Payloads of chunks to come.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ChunkIndex {
-    /// Passes with glue behind them, ascending, and the bytes of its payload.
+    /// Passes that a stitching chunk follows, ascending, and the bytes of its payload.
     pub(crate) glue: Vec<(u32, u32)>,
     /// Kinds of the chunks after the last pass, in order, and the bytes of their payloads.
     pub(crate) trailing: Vec<(u8, u32)>,

@@ -22,7 +22,7 @@ impl Compensation {
     /// Largest weight, either way.
     pub(crate) const MAX: i32 = 64;
 
-    /// Reads those behind the first `count` passes, each as before or so much different; `None` if the payload breaks a
+    /// Reads those after the first `count` passes, each as before or changed; `None` if the payload breaks a
     /// rule.
     pub(crate) fn read(payload: &[u8], count: usize) -> Option<Vec<Self>> {
         let mut reader = BitReader::new(payload);

@@ -9,7 +9,7 @@ use crate::util::bytes::write_varint;
 pub(crate) const MAX_QUANTIZATION_BITS: u32 = 30;
 /// Largest number of passes after the base mesh, and so of levels.
 pub(crate) const MAX_PASSES: u32 = 4096;
-/// Vertices that one byte of payload may bring or refine: encoders pad, so that a small stream
+/// Vertices that one byte of payload may add or refine: encoders pad, so that a small stream
 /// cannot ask for a huge mesh.
 pub(crate) const MAX_VERTICES_PER_BYTE: u32 = 64;
 

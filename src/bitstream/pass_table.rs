@@ -150,7 +150,7 @@ fn read_refinement(reader: &mut BitReader, outlook: &Outlook) -> Option<Pass> {
     Some(Pass { action: Action::Refine, vertices: 0, triangles: 0, bytes })
 }
 
-/// Vertices a payload of `bytes` may bring or refine.
+/// Vertices that a payload of `bytes` may add or refine.
 pub(crate) fn check_density(vertices: u32, bytes: u32) -> Result<(), BadTable> {
     if u64::from(vertices) > u64::from(MAX_VERTICES_PER_BYTE) * (u64::from(bytes) + 1) {
         return Err(BadTable("a pass has more vertices than its bytes could hold"));

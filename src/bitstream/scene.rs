@@ -1,5 +1,5 @@
-//! Chunks `n` and `m` (`format/SPEC.md`, sections 4.6 and 4.7): the meshes of a scene and where they stand; how
-//! materials look.
+//! Chunks `n` and `m` (`format/SPEC.md`, sections 4.6 and 4.7): the meshes of a scene and their instances;
+//! how materials look.
 
 use crate::mesh::{GltfMaterials, IDENTITY, Instance, SceneTable};
 use crate::util::budget::Budget;
@@ -12,7 +12,7 @@ const MOVED: u8 = 1;
 const SINGLE: u8 = 2;
 const DOUBLE: u8 = 3;
 
-/// Memory that a mesh of a scene takes once it stands alone: its arrays' heads and a share of its attributes.
+/// Memory that a mesh of a scene takes once it is separate: its arrays' heads and a share of its attributes.
 const BYTES_PER_MESH: usize = 512;
 /// Fewest bytes of an instance: mesh, length of the name, form.
 const MIN_INSTANCE: usize = 3;

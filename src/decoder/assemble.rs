@@ -1,5 +1,5 @@
-//! From the surface that passes refine to the mesh that was encoded: vertices joined where it was cut, what
-//! lies loose beside it, exact floats, the order of the file (`format/SPEC.md`, section 9).
+//! From the surface that passes refine to the mesh that was encoded: stitched vertices, isolated vertices and
+//! degenerate faces, exact floats, the order of the file (`format/SPEC.md`, section 9).
 
 use super::attributes::AttributeDecoder;
 use super::forecast;
@@ -20,15 +20,15 @@ use crate::passes::stitching::{self, GlueModels};
 use crate::passes::values::{self, Elements, Told};
 use crate::passes::{GridMesh, Malformed, exact};
 
-/// What the chunks beside the passes tell of the finest mesh, as far as they have come.
+/// What the trailing chunks received so far say about the finest mesh.
 #[derive(Default)]
 pub(crate) struct Extras {
-    /// For each vertex the first that is the same; those beyond the end are vertices of their own.
+    /// For each vertex the first that is the same; those beyond the end are separate vertices.
     pub(crate) roots: Vec<u32>,
     pub(crate) glue: GlueModels,
     pub(crate) loose: Option<Loose>,
     pub(crate) positions: Option<Vec<[f64; 3]>>,
-    /// What is told of each attribute beyond the surface.
+    /// What the chunk of exact values says about each attribute.
     pub(crate) values: Vec<Told>,
     pub(crate) order: Option<Order>,
 }
@@ -44,8 +44,8 @@ impl Extras {
         loose + (size_of::<u32>() * (self.roots.capacity() + order) + exact + values) as u64
     }
 
-    /// Whether all that is known is of the vertices and triangles that `mesh` and the loose ones are: whatever order the
-    /// chunks came in, no index is out of range.
+    /// Whether all that is known fits the vertices and triangles of `mesh` and the isolated and degenerate
+    /// ones: in whatever order the chunks came, no index is out of range.
     fn fit(&self, mesh: &GridMesh) -> bool {
         let joined = self.joined(mesh.positions.len());
         let num_vertices = joined.first.len() + self.num_loose(Domain::Vertex);
@@ -107,20 +107,22 @@ impl Extras {
         Joined::new(&self.roots, num_vertices)
     }
 
-    /// What all vertices have, given that of those of the surface: of these joined, then of the loose ones what their
-    /// cells give.
+    /// A value for all vertices, given the values `of` those of the surface: first the stitched vertices,
+    /// then the isolated ones, from their cells.
     fn of_vertices<T: Copy>(&self, joined: &Joined, of: &[T], give: impl Fn([i32; 3]) -> T) -> Vec<T> {
         let loose = self.loose.iter().flat_map(|loose| &loose.cells);
         joined.first.iter().map(|&v| of[v as usize]).chain(loose.map(|&cell| give(cell))).collect()
     }
 
-    /// All triangles, given those of the surface: these of joined vertices, then the loose ones.
+    /// All triangles, given those of the surface: first these, of stitched vertices, then the degenerate
+    /// faces.
     pub(crate) fn triangles(&self, joined: &Joined, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
         let loose = self.loose.iter().flat_map(|loose| &loose.faces);
         joined.faces(triangles).map(|(_, triangle)| triangle).chain(loose.copied()).collect()
     }
 
-    /// The mesh whose surface has these `triangles`; `positions` tells where the vertices are, loose ones are on the `grid`.
+    /// The mesh whose surface has these `triangles`; `positions` gives those of the vertices, isolated ones
+    /// are on the `grid`.
     pub(super) fn assemble(
         &self,
         grid: &Grid,
@@ -144,7 +146,7 @@ impl Extras {
 }
 
 impl Extras {
-    /// How many elements lie loose.
+    /// Number of isolated vertices, or of degenerate faces or their corners.
     fn num_loose(&self, domain: Domain) -> usize {
         let Some(loose) = &self.loose else { return 0 };
         match domain {
@@ -165,8 +167,8 @@ impl Extras {
         Elements { rows, on_surface: joined.elements(triangles, domain), num_loose: self.num_loose(domain) }
     }
 
-    /// The attributes of the assembled mesh, from those of the surface. What lies loose has values only if a chunk
-    /// told them.
+    /// The attributes of the assembled mesh, from those of the surface. Isolated vertices and degenerate
+    /// faces have values only if a chunk gave them.
     pub(super) fn assemble_attributes(
         &self,
         num_vertices: usize,
@@ -234,7 +236,7 @@ const VALUE_PER_COMPONENT: u64 = 60;
 const ORDER_PER_VERTEX: u64 = 24;
 const ORDER_PER_FACE: u64 = 48;
 
-/// A chunk beside the passes, and what it tells of.
+/// A trailing chunk, and what it refers to.
 #[derive(Clone, Copy)]
 pub(super) struct Beside<'a> {
     pub(super) payload: &'a [u8],
@@ -265,7 +267,7 @@ fn units_on_surface(kind: u8, mesh: &GridMesh, declared: Option<&Declarations>) 
 }
 
 impl Extras {
-    /// Takes a chunk that stands behind a pass, or is skipped, and returns the units of work that this took.
+    /// Takes a chunk that follows a pass, or is skipped, and returns the units of work that this took.
     ///
     /// # Errors
     /// If it names something that no encoder writes, does not fit what is there, or is beyond a limit.
@@ -293,7 +295,7 @@ impl Extras {
         Ok(units + loose.map_or(0, |loose| cost::loose(loose.len())))
     }
 
-    /// Joins vertices that have come since the last time.
+    /// Stitches the vertices added since the last time.
     fn read_glue(&mut self, chunk: Beside) -> Result<(), Refused> {
         chunk.check_memory(GLUE_PER_VERTEX * chunk.mesh.positions.len() as u64)?;
         let known = self.roots.len();
@@ -305,7 +307,7 @@ impl Extras {
         Ok(result?)
     }
 
-    /// Takes what lies loose beside the finest surface.
+    /// Takes the isolated vertices and the degenerate faces.
     fn read_loose(&mut self, chunk: Beside) -> Result<(), Refused> {
         let Beside { payload, mesh, grid, limits, .. } = chunk;
         let mut coder = RangeDecoder::new(payload);

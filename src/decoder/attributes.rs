@@ -1,4 +1,4 @@
-//! Attributes of the mesh so far: the chunks behind the passes, and what is guessed where they have not come.
+//! Attributes of the mesh so far: the chunks after the passes, and predictions where these have not arrived.
 
 use super::frame::PassInfo;
 use crate::bitstream::header::Action;
@@ -89,18 +89,18 @@ impl AttributeDecoder {
         Ok(is_done)
     }
 
-    /// Attributes of `mesh`, which has `num_vertices` and `num_faces`; values that have not come are guessed, with
-    /// the help of the beginning of their payload if no other part has been decoded.
+    /// Attributes of `mesh`, which has `num_vertices` and `num_faces`; values that have not arrived are
+    /// predicted, with the help of the beginning of their payload if no other part has been decoded.
     pub(super) fn attributes(&self, mesh: &GridMesh, cut: &[u8]) -> Attributes {
         let Some(pending) = &self.state.pending else { return self.collect(&self.state.layers) };
         let has_begun = pending.coder.is_some();
         let cut = if has_begun || cut.len() < 5 { &[] } else { cut };
-        // A payload that is nonsense has its error when it is complete; until then it tells nothing.
+        // A nonsense payload gives its error when it is complete; until then it says nothing.
         let known = self.state.clone().guessed(mesh, cut).or_else(|| self.state.clone().guessed(mesh, &[]));
         self.collect(&known.as_ref().unwrap_or(&self.state).layers)
     }
 
-    /// Attributes of a mesh to which some vertices of a split have come back that is not complete.
+    /// Attributes of a mesh with the vertices restored so far of an incomplete split.
     pub(super) fn with_cut(&self, mesh: &GridMesh, patches: &Patches, first: usize) -> Attributes {
         let mut ahead = self.state.clone();
         let patches = Some(patches.clone());
@@ -129,8 +129,9 @@ impl AttributeDecoder {
 }
 
 impl State {
-    /// With all values of the pending pass, those guessed that the beginning of a payload does not decide; `None` if
-    /// it is nonsense.
+    /// With all values of the pending pass; those that the beginning of a payload does not decide are
+    /// predicted.
+    /// `None` if it is nonsense.
     fn guessed(mut self, mesh: &GridMesh, cut: &[u8]) -> Option<Self> {
         let is_done = self
             .advance(mesh, &mut RangeDecoder::of_cut(cut), &mut WorkBudget::unlimited(), |_, _| {})
@@ -205,7 +206,7 @@ fn collect(declaration: &Declaration, layer: &Layer) -> Attribute {
     }
 }
 
-/// Checks the bytes of values against what the passes bring.
+/// Checks the bytes of values against what the passes add.
 pub(super) fn check_density(declarations: &Declarations, passes: &[PassInfo]) -> Result<(), &'static str> {
     let num_channels: u64 = declarations.list.iter().map(|d| d.num_channels() as u64).sum();
     for (pass, &bytes) in passes.iter().zip(&declarations.bytes) {

@@ -9,13 +9,13 @@ use crate::mesh::Domain;
 use crate::passes::attribute::Declarations;
 use crate::passes::cost::{self, Counts};
 
-/// Units of work that may be done by the time that so many bytes of the stream have been read.
+/// Units of work that are allowed once that many bytes of the stream have been read.
 pub(super) fn allowed(limits: &Limits, bytes: u64) -> u64 {
     limits.max_work.unwrap_or(cost::earned(bytes))
 }
 
-/// Checks what each pass and each chunk behind the last one costs against what the bytes up to its end earn. Returns the
-/// sum.
+/// Checks the cost of each pass and of each chunk after the last one against what the bytes up to its end
+/// earn. Returns the sum.
 pub(super) fn check(info: &StreamInfo, declared: &Declarations, limits: &Limits) -> Result<u64, DecodeError> {
     let channels = declared.list.iter().map(|one| one.num_channels() as u64).sum();
     let (mut work, mut counts) = (0, Counts::default());
@@ -32,7 +32,8 @@ pub(super) fn check(info: &StreamInfo, declared: &Declarations, limits: &Limits)
     Ok(work)
 }
 
-/// Units of a chunk after the last pass, which left a mesh of `finest`; without what lies loose.
+/// Units of a chunk after the last pass, which left a mesh of `finest`; without isolated vertices and
+/// degenerate faces.
 pub(crate) fn of_trailing(kind: TrailingKind, finest: Counts, declared: &Declarations) -> u64 {
     match kind {
         TrailingKind::Exact => cost::exact(finest),

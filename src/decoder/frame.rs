@@ -1,4 +1,4 @@
-//! From bytes to chunks: what a stream announces, and where its passes begin.
+//! From bytes to chunks: what a stream declares, and where its passes begin.
 
 use crate::bitstream::chunk::{self, Frame, NextPass};
 use crate::bitstream::chunk_index::ChunkIndex;
@@ -11,7 +11,7 @@ use crate::limits::Limits;
 use crate::mesh::{ComponentType, Domain, SceneTable, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
 
-/// What a stream says of itself before its first pass.
+/// What a stream says about itself before its first pass.
 #[derive(Clone, Debug)]
 pub struct StreamInfo {
     pub(super) grid: Grid,
@@ -24,7 +24,7 @@ pub struct StreamInfo {
     pub(super) work: u64,
 }
 
-/// What a stream says of one of its attributes.
+/// What a stream says about one of its attributes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct AttributeInfo {
@@ -136,7 +136,7 @@ impl PassKind {
     }
 }
 
-/// One pass of a stream, and the mesh that stands after it.
+/// One pass of a stream, and the mesh after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PassInfo {
     /// What the pass does.
@@ -153,7 +153,8 @@ pub struct PassInfo {
     pub bytes: u64,
     /// Bytes of the chunk with the values of attributes that follows it, 0 without one.
     pub attribute_bytes: u64,
-    /// Bytes of the chunk behind that which joins vertices again that were cut apart, 0 without one.
+    /// Bytes of the stitching chunk that follows, which joins vertices again that were cut apart, 0 without
+    /// one.
     pub glue_bytes: u64,
     /// Bytes of the stream up to the end of the pass and of the chunks that belong to it.
     pub end: u64,
@@ -180,7 +181,7 @@ impl StreamInfo {
     /// come yet. Nothing is decoded.
     ///
     /// # Errors
-    /// If the bytes are no stream, or damaged before the table ends.
+    /// If the bytes are not a stream, or are damaged before the table ends.
     pub fn read(bytes: &[u8]) -> Result<Option<Self>, DecodeError> {
         let limits = Limits { max_work: Some(u64::MAX), ..Limits::default() };
         let mut decoder = super::Decoder::new(limits);
@@ -229,14 +230,14 @@ impl StreamInfo {
         &self.trailing
     }
 
-    /// Bytes of the whole stream, skippable chunks between passes that it does not announce not counted.
+    /// Bytes of the whole stream, not counting skippable chunks between passes that the stream does not list.
     pub fn total_bytes(&self) -> u64 {
         let last_pass = self.passes.last().map(|p| p.end);
         self.trailing.last().map(|t| t.end).or(last_pass).unwrap_or(0)
     }
 
-    /// Most units of work that decoding takes, as [`Decoder::work_done`](crate::Decoder::work_done) counts them; what lies
-    /// loose not counted. See [`Limits::max_work`].
+    /// Most units of work that decoding takes, as [`Decoder::work_done`](crate::Decoder::work_done) counts
+    /// them, without isolated vertices and degenerate faces. See [`Limits::max_work`].
     pub fn work(&self) -> u64 {
         self.work
     }
@@ -284,7 +285,7 @@ impl FrameReader {
         Self { buffer: Vec::new(), read: 0, offset: 0, has_signature: false }
     }
 
-    /// Adds bytes behind those that are there, which move if they may.
+    /// Appends bytes; those that are there may move if `may_move`.
     pub(super) fn feed(&mut self, bytes: &[u8], may_move: bool) {
         if may_move && self.read > 0 && self.read >= self.buffer.len() / 2 {
             self.buffer.drain(..self.read);
@@ -302,7 +303,8 @@ impl FrameReader {
         self.buffer.capacity() as u64
     }
 
-    /// Bytes of memory held at most while so many more bytes come in: the buffer may move to a larger place.
+    /// The most bytes of memory held while that many more bytes come in: the buffer may move to a larger
+    /// place.
     pub(super) fn memory_with(&self, more: usize) -> u64 {
         let needed = self.buffer.len().saturating_add(more);
         let moved = if needed > self.buffer.capacity() { self.grown_for(needed) } else { 0 };
@@ -314,7 +316,7 @@ impl FrameReader {
         if self.buffer.is_empty() { needed } else { needed.saturating_add(needed / 2) }
     }
 
-    /// Place in the stream behind the last chunk.
+    /// Position in the stream after the last chunk.
     pub(super) fn position(&self) -> u64 {
         self.offset
     }
@@ -386,7 +388,7 @@ pub(super) fn printable(kind: u8) -> char {
     if kind.is_ascii_graphic() { char::from(kind) } else { '?' }
 }
 
-/// Notes how the mesh is shown behind each pass but the last, after which nothing is missing.
+/// Notes how the mesh is shown after each pass but the last, after which nothing is missing.
 pub(super) fn add_compensation(passes: &mut [PassInfo], payload: &[u8]) -> Result<(), BadTable> {
     let Some((_, coarser)) = passes.split_last_mut() else { return Ok(()) };
     let all = Compensation::read(payload, coarser.len()).ok_or(BadTable("the compensation"))?;
@@ -395,7 +397,7 @@ pub(super) fn add_compensation(passes: &mut [PassInfo], payload: &[u8]) -> Resul
 }
 
 /// Turns the table of passes into running totals. `start` is where the first pass begins, `attributes` the
-/// payload of the attributes behind each pass: as many rows, or none.
+/// payload of the attributes after each pass: as many rows, or none.
 pub(super) fn list_passes(
     payload: &[u8],
     grid: &Grid,
@@ -445,7 +447,7 @@ pub(super) fn list_passes(
     Ok(passes)
 }
 
-/// Makes room for announced chunks: the glue of the passes, and what follows the last one.
+/// Makes room for the trailing chunks: stitching after passes, and what follows the last pass.
 pub(super) fn add_announced(
     passes: &mut [PassInfo],
     announced: &ChunkIndex,

@@ -1,4 +1,4 @@
-//! What stands before the passes: header chunks in, [`StreamInfo`] out (`format/SPEC.md`, section 4).
+//! What comes before the passes: header chunks in, [`StreamInfo`] out (`format/SPEC.md`, section 4).
 
 use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, StreamInfo, TrailingInfo};
 use super::refused::{malformed, out_of_order, skip};
@@ -14,11 +14,11 @@ use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
 use crate::util::budget::Budget;
 
-/// Whether the decoder knows what stands beside the surface. Without that all of it is skipped as chunks that nobody
-/// knows, and the compiler leaves out what would read it.
+/// Whether the decoder reads what is outside the surface. Otherwise it skips all of that like unknown chunks,
+/// and the compiler leaves out the code that would read it.
 pub(super) const ASSETS: bool = cfg!(feature = "assets");
 
-/// The header chunks that have come.
+/// The header chunks received so far.
 #[derive(Default)]
 pub(super) struct Head {
     header: Option<Header>,
@@ -40,7 +40,7 @@ impl Head {
         self.held
     }
 
-    /// Takes a chunk that stands before the passes. The table of passes completes what the stream says of itself.
+    /// Takes a chunk before the passes. The table of passes completes the information about the stream.
     pub(super) fn take(&mut self, source: Source) -> Result<Option<StreamInfo>, DecodeError> {
         let Source { chunk, .. } = source;
         match (chunk.kind, &self.header) {
@@ -81,7 +81,7 @@ impl Head {
         Ok(())
     }
 
-    /// Takes how materials look, from a chunk before the passes or behind them.
+    /// Takes how materials look, from a chunk before or after the passes.
     pub(super) fn take_materials(&mut self, source: Source) -> Result<(), DecodeError> {
         self.materials = Some(self.read(source, "materials", scene::read_materials)?);
         Ok(())

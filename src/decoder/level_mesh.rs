@@ -49,7 +49,8 @@ impl<'a> LevelMesh<'a> {
         self.cells
     }
 
-    /// The middle of a vertex's cell in model units: on the surface that was encoded, but for the bits that have not come.
+    /// The middle of a vertex's cell in model units: on the surface that was encoded, except for the bits not
+    /// received yet.
     ///
     /// # Panics
     /// If there is no such vertex.
@@ -62,19 +63,19 @@ impl<'a> LevelMesh<'a> {
         self.compensation != Compensation::NONE
     }
 
-    /// Positions in model units, in order. A coarse mesh whose vertices lie on a curved surface lies inside of it: until
-    /// the last pass vertices are shown a little further out, as far as the encoder found to be best, unless
-    /// [`DecodeOptions::shrinkage_compensation`](crate::DecodeOptions::shrinkage_compensation) says otherwise.
+    /// Positions in model units, in order. A coarse mesh whose vertices lie on a curved surface lies inside
+    /// it. So until the last pass vertices are shown a little further out, by as much as the encoder found
+    /// best, unless [`DecodeOptions::shrinkage_compensation`](crate::DecodeOptions::shrinkage_compensation) says otherwise.
     pub fn positions(&self) -> Vec<[f64; 3]> {
         let mut placing = PositionUpdater::new(self);
         placing.advance(self, usize::MAX);
         (0..self.num_vertices()).map(|v| placing.position(self, v)).collect()
     }
 
-    /// The mesh that was encoded, as far as this level and the chunks that have come tell: vertices are
-    /// joined where the surface was cut, triangles that have no three vertices then are left out. Behind the
-    /// last pass come loose vertices and faces, exact coordinates and the order of the file, if the stream has
-    /// them.
+    /// The mesh that was encoded, as far as this level and the chunks received so far describe it. Vertices
+    /// are stitched where the surface was cut, and triangles that then have fewer than three different
+    /// vertices are left out. After the last pass come isolated vertices, degenerate faces, exact coordinates
+    /// and the order of the file, if the stream has them.
     pub fn to_tri_mesh(&self) -> TriMesh {
         self.extras.assemble(self.grid, || self.positions(), self.num_vertices(), self.triangles)
     }
@@ -84,8 +85,9 @@ impl<'a> LevelMesh<'a> {
         TriMesh::from_decoded_parts(self.positions(), self.triangles.to_vec())
     }
 
-    /// For each vertex of this cut surface the vertex of the joined one, and the number of those: before
-    /// loose vertices follow and any order is restored, that of [`to_tri_mesh`](Self::to_tri_mesh).
+    /// For each vertex of this cut surface its stitched vertex, and the number of those. This is the
+    /// numbering before isolated vertices follow and any order is restored, that of
+    /// [`to_tri_mesh`](Self::to_tri_mesh).
     pub fn stitched_vertices(&self) -> (Vec<u32>, usize) {
         let joined = self.extras.joined(self.cells.len());
         (joined.place, joined.first.len())

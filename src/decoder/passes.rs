@@ -80,7 +80,8 @@ impl PassDecoder {
             + BYTES_PER_TRIANGLE * u64::from(pass.triangles)
     }
 
-    /// Checks a pass against the limits before anything is allocated for it. `held`: bytes that are taken besides.
+    /// Checks a pass against the limits before anything is allocated for it. `held`: bytes that are held in
+    /// addition.
     pub(super) fn check_limits(
         &self,
         pass: &PassInfo,
@@ -128,8 +129,8 @@ impl PassDecoder {
         }
     }
 
-    /// The mesh with the beginning of a pass: a split brings back the vertices whose coordinates are
-    /// there, a refinement guesses the bits that are missing. `None` if the bytes tell nothing.
+    /// The mesh with the beginning of a pass: a split restores the vertices whose coordinates are
+    /// there, a refinement predicts the missing bits. `None` if the bytes decide nothing.
     pub(super) fn mesh_with_cut(&self, pass: &PassInfo, payload: &[u8]) -> Option<(GridMesh, Patches)> {
         if pass.kind == PassKind::Base {
             return None;

@@ -46,7 +46,7 @@ enum Stage {
     Places(Box<Placement<'static>>),
     /// Connectivity of a split.
     Walk(PausedWalk),
-    /// Room for what a split brings: the longest arrays are copied part by part.
+    /// Room for what a split adds: the longest arrays are copied part by part.
     Triangles(Patches, Vec<[u32; 3]>),
     Opposite(Patches, Vec<u32>),
     /// Stars from this patch on.
@@ -269,7 +269,7 @@ fn at_end<T>(result: Result<Option<T>, Malformed>, coder: &impl BitCoder) -> Res
     }
 }
 
-/// Goes on copying `from` behind the end of `to`; true once all is there.
+/// Continues to append `from` to `to`; true once all of it is there.
 fn copy_some<T: Copy>(from: &[T], to: &mut Vec<T>, work: &mut WorkBudget, change: impl Fn(T) -> T) -> bool {
     while to.len() < from.len() && work.take(1) {
         let end = from.len().min(to.len() + SWEPT_PER_UNIT);

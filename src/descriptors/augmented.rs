@@ -1,7 +1,7 @@
 //! PCA and PCA-QEM of vertices with attributes, in d dimensions (section 5.2).
 //!
-//! The window is that of the positions (eq. 1), and so are its weights; the vectors of eq. 3 and 27–33 have the
-//! attributes behind them.
+//! The window is that of the positions (eq. 1), and so are its weights; the vectors of eq. 3 and 27–33 are
+//! followed by the attributes.
 
 use nalgebra::{DMatrix, DVector};
 

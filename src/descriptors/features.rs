@@ -7,10 +7,10 @@ use thiserror::Error;
 use super::Descriptor;
 use crate::mesh::{Attribute, Attributes, Semantic, TriMesh};
 
-/// The most coordinates beside the three of the position.
+/// The most coordinates in addition to the three of the position.
 pub const MAX_FEATURES: usize = 13;
 
-/// Coordinates of each vertex beside its position, for descriptors in more than three dimensions
+/// Coordinates of each vertex in addition to its position, for descriptors in more than three dimensions
 /// (section 5.2: "the same logic is valid in the general case").
 #[derive(Clone, Debug, PartialEq)]
 pub struct Features {

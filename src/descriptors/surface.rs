@@ -21,7 +21,8 @@ pub(super) struct Vertex {
     pub(super) normal: DVec3,
 }
 
-/// Surfaces with so many vertices have their tables made one after the other: both at once take too much memory.
+/// The tables of surfaces with at least this many vertices are made one after the other: both at once take
+/// too much memory.
 const MANY_VERTICES: usize = 1 << 20;
 
 /// The input of every descriptor. Vertices are renumbered so that neighbours are near in memory.
@@ -39,7 +40,7 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// `None` if l̄ vanishes beside the coordinates, or there are no edges.
+    /// `None` if l̄ vanishes compared with the coordinates, or there are no edges.
     ///
     /// Vertices keep their order if they are `in_order`: those near each other in memory are so in space.
     pub(super) fn new(
@@ -190,7 +191,7 @@ pub(super) fn mean_edge_length(mesh: &TriMesh) -> f64 {
     let Some((low, high)) = bounding_box(mesh, &triangles) else {
         return 0.0;
     };
-    // Squares then overflow nowhere, and vanish only beside coordinates 2^1000 times larger.
+    // Squares then overflow nowhere, and vanish only against coordinates 2^1000 times larger.
     let shift = 500 - exponent(low.abs().max(high.abs()).max_element());
     let positions = scaled_positions(mesh, shift);
     let adjacency = Adjacency::new(positions.len(), &triangles);

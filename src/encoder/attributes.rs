@@ -32,7 +32,7 @@ pub(super) struct QuantisedAttribute {
     pub(super) rows: Vec<i32>,
     /// The row of each vertex, corner or face of the surface, or [`NO_ENTRY`].
     pub(super) of: Vec<u32>,
-    /// The row of each element of the mesh that lies loose.
+    /// The row of each isolated vertex, or of each degenerate face or its corners.
     pub(super) loose: HashMap<u32, u32>,
     /// Which of the seams' attributes it is, unless it belongs to vertices.
     pub(super) track: Option<usize>,
@@ -51,7 +51,7 @@ impl Quantised {
         seams
     }
 
-    /// What a stream with these values behind its passes says of them.
+    /// What a stream with these values after its passes declares about them.
     pub(super) fn declare(&self, values: &[Vec<u8>]) -> Declarations {
         Declarations {
             list: self.list.iter().map(|attribute| attribute.declaration.clone()).collect(),
@@ -80,7 +80,7 @@ impl Elements<'_> {
     }
 }
 
-/// Quantises the attributes of `mesh` for a surface, and for what is kept beside it.
+/// Quantises the attributes of `mesh` for a surface, and for what is kept outside it.
 ///
 /// # Errors
 /// If one does not fit the mesh, or there are too many.
@@ -254,7 +254,7 @@ fn table(attribute: &Attribute, used: &[u32]) -> Option<Coding> {
     (rows.len() / n <= MAX_TABLE).then_some(Coding::Table { rows })
 }
 
-/// What tells rows of a table apart: a name, or the bits of numbers.
+/// What distinguishes rows of a table: a name, or the bits of numbers.
 #[derive(PartialEq, Eq, Hash)]
 enum Key<'a> {
     Name(&'a str),

@@ -175,7 +175,8 @@ mod tests {
         // At six places, and all at one.
         check_shuffled(&corners.repeat(40), &copies(&OCTAHEDRON, 6), 20);
         check_shuffled(&[[1.0; 3]; 240], &copies(&OCTAHEDRON, 6), 20);
-        // Isolated triangles, some of them turned over; and leaves of a book, in pairs that nothing tells apart.
+        // Isolated triangles, some of them turned over; and leaves of a book, in pairs that nothing
+        // distinguishes.
         let mut triangles = copies(&[[0, 1, 2]], 3);
         triangles[..9].iter_mut().for_each(|t| t.swap(0, 1));
         check_shuffled(&corners[..3].repeat(40), &triangles, 20);

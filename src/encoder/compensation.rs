@@ -61,9 +61,9 @@ pub(super) struct Fitter<'a> {
     /// For each point the vertices near it, the one of the full surface first, each closest to the one before of those that
     /// are left where that goes.
     chains: Vec<Vec<u32>>,
-    /// Of each chain the first vertex that has come.
+    /// For each chain the first vertex that has been added.
     reached: Vec<usize>,
-    /// The vertices of all chains, and where those stand in the mesh that have come.
+    /// The vertices of all chains, and the indices in the mesh of those that have been added.
     is_in_chain: BitVec,
     places: FxHashMap<u32, u32>,
     num_seen: usize,

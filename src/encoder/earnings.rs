@@ -6,8 +6,9 @@ use crate::decoder::{TrailingKind, forecast};
 use crate::passes::attribute::Declarations;
 use crate::passes::cost::{self, Counts, Ledger};
 
-/// Appends zeros to the payloads of passes until each has earned what it costs by its end with the `values` behind it, and
-/// the last one also what the chunks behind it cost. `loose`: vertices and triangles in these that no pass brings.
+/// Appends zeros to the payloads of passes until each has earned its cost by its end, including the `values`
+/// after it, and the last one also the cost of the chunks after it. `loose`: vertices and triangles in these that
+/// no pass adds.
 pub(super) fn pad(
     passes: &mut [WrittenPass],
     values: &[Vec<u8>],

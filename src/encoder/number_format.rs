@@ -1,14 +1,14 @@
-//! Which numbers the values of a kind all are: decimals of so many digits, or any floats.
+//! Which numbers all values of a kind are: decimals with a number of digits, or any floats.
 
 use crate::passes::float_values::{Ladder, Scale};
 
 /// Numbers that are looked at first.
 const SAMPLES: usize = 2000;
-/// One of so many may be no such number.
+/// One of this many need not be such a number.
 const EXCEPTIONS: usize = 200;
 
-/// The scale of `count` numbers, but for a few, that takes the fewest bits where the middle and half the width of
-/// the interval `around` each of them are known.
+/// The scale of `count` numbers, except for a few, that takes the fewest bits where the middle and half the
+/// width of the interval `around` each of them are known.
 pub(super) fn cheapest_scale(
     is_wide: bool,
     count: usize,

@@ -1,4 +1,4 @@
-//! What the caller may choose, and what comes back.
+//! What the caller may choose, and what the encoder returns.
 
 use crate::bitstream::profile::Profile;
 use crate::decoder::StreamInfo;
@@ -19,7 +19,7 @@ pub struct EncodeOptions {
     pub window: Window,
     /// Factor of the radius from each level to the next coarser one. Default 1.5.
     pub growth: f64,
-    /// Attributes that the descriptor sees beside positions, if it is pca or pca-qem. Default none.
+    /// Attributes that the descriptor uses in addition to positions, if it is pca or pca-qem. Default none.
     pub descriptor_attributes: Vec<FeatureChoice>,
     /// Bits per coordinate, 1 to 30. Default 12.
     pub quantization_bits: u32,
@@ -53,9 +53,10 @@ pub struct EncodeOptions {
     /// How the passes are coded; `None`: max where only the size of the file counts ([`Optimize::Size`]), else small.
     /// Default `None`.
     pub profile: Option<Profile>,
-    /// Time that may be spent, 0 to 9. Below [`LOW_EFFORT`](Self::LOW_EFFORT) the partition by weighted error
-    /// leaves the descriptor out, which takes a third of the time less; from [`HIGH_EFFORT`](Self::HIGH_EFFORT) on several ways are
-    /// tried where only the size of the file counts ([`Optimize::Size`]), with 9 all of them. Default 5.
+    /// Time that may be spent, 0 to 9. Below [`LOW_EFFORT`](Self::LOW_EFFORT) the descriptor does not affect
+    /// the partition by weighted error, which takes a third less time; from
+    /// [`HIGH_EFFORT`](Self::HIGH_EFFORT) on several ways are tried where only the size of the file counts
+    /// ([`Optimize::Size`]), with 9 all of them. Default 5.
     pub effort: u32,
 }
 
@@ -86,7 +87,7 @@ impl Default for EncodeOptions {
 }
 
 impl EncodeOptions {
-    /// Below this effort the partition by weighted error leaves the descriptor out.
+    /// Below this effort the descriptor does not affect the partition by weighted error.
     pub const LOW_EFFORT: u32 = 3;
     /// From this effort on several ways are tried.
     pub const HIGH_EFFORT: u32 = 7;
@@ -120,7 +121,7 @@ impl EncodeOptions {
         const AT_ONCE: Option<f64> = Some(f64::MAX);
         match (self.optimize, self.effort) {
             (Optimize::Size, Self::HIGH_EFFORT..) => &[None, AT_ONCE, Some(32.0), Some(64.0)],
-            // Which surfaces are smaller with all bits at once only trying tells.
+            // Only a trial shows which surfaces are smaller with all bits at once.
             (Optimize::Size, Self::LOW_EFFORT..) => &[None, AT_ONCE],
             _ => &[None],
         }

@@ -1,5 +1,5 @@
-//! Which patches bring a level's vertices back, found before the level below is coded: the walk looks at no model of
-//! coordinates, and the encoder knows where the vertices will be.
+//! Which patches restore a level's vertices, found before the level below is coded: the walk looks at no
+//! model of coordinates, and the encoder knows where the vertices will be.
 
 use super::expect_sound;
 use crate::entropy::context_mixer::Mixing;
@@ -54,8 +54,8 @@ impl PatchSearch {
         valence.clone_from(&surface.valence);
     }
 
-    /// The patches that bring back the vertices of `record` on the surface that was last followed, where `hidden`
-    /// bits of the `cells` are not known.
+    /// The patches that restore the vertices of `record` on the surface that was last followed, where
+    /// `hidden` bits of the `cells` are not known.
     pub(super) fn find_ahead(
         &mut self,
         cells: &[[i32; 3]],
@@ -71,7 +71,7 @@ impl PatchSearch {
         found
     }
 
-    /// The patches that bring back the vertices of `record`.
+    /// The patches that restore the vertices of `record`.
     pub(super) fn find(&mut self, mesh: &GridMesh, names: &Names, record: &LevelRecord) -> Found {
         let mut coder = RangeEncoder::new();
         let (patches, odd) = self.find_with(&mut coder, mesh, names, record);

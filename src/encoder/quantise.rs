@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn decoded_points_have_the_same_grid_and_cells() {
-        // Sums that are rounded: origins that are no binary fractions, three sides of one length.
+        // Sums that are rounded: origins that are not binary fractions, three sides of one length.
         let mut seed = 1_u64;
         let mut random = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -1,5 +1,5 @@
-//! What tells vertices and triangles apart that lie in the same place: the values of their attributes, as a decoder
-//! will have them.
+//! What distinguishes vertices and triangles at the same position: the values of their attributes, as a
+//! decoder will have them.
 
 use super::attributes::{Elements, quantise};
 use super::options::EncodeOptions;
@@ -72,13 +72,13 @@ impl Signatures {
         }
     }
 
-    /// What tells a triangle apart that begins with a corner.
+    /// What distinguishes a triangle that begins with a corner.
     pub(super) fn triangle(&self, corner: u32) -> u64 {
         let corners = turns(corner).map(|c| self.corners[c as usize]);
         corners.into_iter().fold(self.faces[(corner / 3) as usize], |hash, c| mix(hash ^ c))
     }
 
-    /// What a corner tells the vertex at it.
+    /// What a corner passes to its vertex.
     pub(super) fn corner(&self, corner: u32) -> u64 {
         mix(self.triangle(corner))
     }

@@ -1,9 +1,10 @@
-//! Vertices of equal cells, told apart by what is around them.
+//! Vertices with equal cells, distinguished by what is around them.
 //!
-//! First all vertices look at their neighbours for some rounds. What that leaves equal is told apart by splitting
-//! classes (Paige and Tarjan, *Three partition refinement algorithms*, 1987; McKay, *Practical graph isomorphism*,
-//! 1981): a vertex is marked, and only where a class of equal vertices comes apart the neighbours are looked at
-//! again. So equal pieces cost what they have of faces, however many lie at one place.
+//! First all vertices look at their neighbours for some rounds. What that leaves equal is distinguished by
+//! splitting classes (Paige and Tarjan, *Three partition refinement algorithms*, 1987; McKay, *Practical
+//! graph isomorphism*, 1981): a vertex is marked, and only where a class of equal vertices comes apart the
+//! neighbours are looked at again. So equal pieces cost as much as they have faces, however many are at one
+//! position.
 
 use super::tie_break::mix;
 use crate::mesh::CornersAt;
@@ -16,11 +17,11 @@ const MOST_ROUNDS: usize = 16 * ROUNDS;
 /// More is asked for by meshes that somebody made for it, whose order then depends on the file.
 const BUDGET: usize = 64;
 
-/// Vertices in order of their codes, and what tells those of equal codes apart.
+/// Vertices in order of their codes, and what distinguishes those with equal codes.
 pub(super) struct Ties<'a> {
     triangles: &'a [[u32; 3]],
     codes: Vec<u128>,
-    /// Of each vertex; equal vertices of equal codes are a class.
+    /// One per vertex; equal vertices with equal codes are a class.
     pub(super) hash: Vec<u64>,
     /// Vertices by code, then hash, then index.
     order: Vec<u32>,
@@ -61,7 +62,7 @@ impl<'a> Ties<'a> {
         (classes.order, classes.work)
     }
 
-    /// What the corners tell each vertex.
+    /// What the corners pass to each vertex.
     fn sums(&self) -> Vec<u64> {
         let mut sums = vec![0_u64; self.hash.len()];
         for &[a, b, c] in self.triangles {
@@ -89,7 +90,7 @@ impl<'a> Ties<'a> {
     }
 }
 
-/// What a corner tells the vertex at it: its two other vertices, in their order.
+/// What a corner passes to its vertex: its two other vertices, in their order.
 fn told(next: u64, previous: u64) -> u64 {
     mix(next.rotate_left(20).wrapping_add(mix(previous)))
 }
@@ -99,10 +100,10 @@ struct Classes<'a> {
     triangles: &'a [[u32; 3]],
     corners: CornersAt,
     hash: Vec<u64>,
-    /// What the corners tell each vertex, with the hashes of now.
+    /// What the corners pass to each vertex, with the current hashes.
     sums: Vec<u64>,
     order: Vec<u32>,
-    /// Of each vertex its place in `order`, and the first place of its class.
+    /// For each vertex its place in `order`, and the first place of its class.
     places: Vec<u32>,
     firsts: Vec<u32>,
     /// By the first place of a class: where it ends, and how many of its last vertices are touched.
@@ -202,7 +203,7 @@ impl<'a> Classes<'a> {
         }
     }
 
-    /// Makes what a class has from `place` on a class of its own.
+    /// Makes the part of a class from `place` on a separate class.
     fn split_off(&mut self, first: u32, place: u32) {
         let end = std::mem::replace(&mut self.ends[first as usize], place);
         self.ends[place as usize] = end;
@@ -211,7 +212,7 @@ impl<'a> Classes<'a> {
         }
     }
 
-    /// Gives a vertex another hash and tells those around it.
+    /// Gives a vertex another hash and passes it to those around it.
     fn rename(&mut self, v: u32, hash: u64) {
         let before = std::mem::replace(&mut self.hash[v as usize], hash);
         for i in 0..self.corners.at(v).len() {
@@ -254,7 +255,7 @@ impl<'a> Classes<'a> {
 mod tests {
     use super::*;
 
-    /// What it costs to tell all vertices apart, beside the vertices and corners there are.
+    /// The cost of telling all vertices apart, relative to the number of vertices and corners.
     fn work(codes: Vec<u128>, triangles: &[[u32; 3]]) -> f64 {
         let size = codes.len() + 3 * triangles.len();
         let (mut order, work) = Ties::new(codes, triangles).resolve_counting();

@@ -1,4 +1,4 @@
-//! What follows the last pass: everything of the mesh that the surface on the grid does not tell.
+//! What follows the last pass: everything about the mesh that the surface on the grid does not contain.
 
 use super::canonical_order::Ordered;
 use super::number_format::cheapest_scale;
@@ -21,10 +21,10 @@ use crate::passes::{GridMesh, exact};
 use crate::util::morton::morton;
 use bitvec::vec::BitVec;
 
-/// Glued vertices are never removed unless they are a larger share of all: the base would be too large.
+/// Stitched vertices are never removed unless they are a larger share of all: the base would be too large.
 const MOST_GLUED: f64 = 0.25;
 
-/// The vertices of the surface that are never removed, so that their glue is there from the start and no level
+/// The vertices of the surface that are never removed, so that they are stitched from the start and no level
 /// has a crack. `source`: ascending, the vertex of the mesh for each.
 pub(super) fn kept(source: &[u32]) -> BitVec {
     let is_glued = |i: usize| {
@@ -75,7 +75,7 @@ pub(super) fn sort_loose_corners(
     corners.sort_by_cached_key(|&corner| turn(corner));
 }
 
-/// Puts loose vertices in the order of their cells, ties by their coordinates and attributes.
+/// Puts isolated vertices in the order of their cells, ties by their coordinates and attributes.
 pub(super) fn sort_loose(loose: &mut [u32], mesh: &TriMesh, grid: &Grid, signatures: Option<&Signatures>) {
     let at = |v: u32| mesh.positions()[v as usize];
     let signature = |v: u32| signatures.map(|s| s.vertices[v as usize]);
@@ -92,7 +92,7 @@ pub(super) struct Exact<'a> {
     pub(super) source: &'a [u32],
     /// Vertices of the mesh that follow those of the surface.
     pub(super) loose: &'a [u32],
-    /// First corners of the triangles that are no part of the surface, in order.
+    /// First corners of the triangles that are not part of the surface, in order.
     pub(super) loose_corners: &'a [u32],
     pub(super) values: ExactValues<'a>,
     pub(super) options: &'a EncodeOptions,
@@ -117,7 +117,7 @@ fn turned_to(triangle: [u32; 3], corner: u32, first: u32) -> u32 {
 }
 
 impl Exact<'_> {
-    /// Kinds and payloads of the chunks. `roots`: the glue of the surface.
+    /// Kinds and payloads of the chunks. `roots`: the stitching of the surface.
     pub(super) fn trailing(&self, surface: &Written, roots: Vec<u32>) -> Vec<(u8, Vec<u8>)> {
         if self.says_nothing() {
             return Vec::new();
@@ -173,7 +173,8 @@ impl Exact<'_> {
         !(has_loose || lossless || keep_order || !self.values.quantised.list.is_empty())
     }
 
-    /// What is loose, and the corner of the mesh that is the first of each loose face.
+    /// Isolated vertices and degenerate faces, and the corner of the mesh that is the first of each
+    /// degenerate face.
     fn loose(&self, vertices: &[u32]) -> (Loose, Vec<u32>) {
         let cells = self.loose.iter().map(|&v| self.grid.cell(self.mesh.positions()[v as usize])).collect();
         let mut place = vec![0_u32; self.mesh.num_vertices()];

@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(BitReader::new(&bytes).number(0), None);
         let mut reader = BitReader::new(&bytes);
         assert_eq!((reader.long(0), reader.near(4)), (Some(1 << 32), None));
-        // Bits set behind the end, and a byte too many.
+        // Bits set after the end, and a byte too many.
         for (bytes, is_over) in [(&[0b0100_0000][..], true), (&[0b0100_0001], false), (&[0x40, 0], false)] {
             let mut reader = BitReader::new(bytes);
             assert_eq!((reader.bit(), reader.bit()), (Some(false), Some(true)));

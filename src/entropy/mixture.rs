@@ -15,7 +15,7 @@ pub(crate) struct Mixture {
 }
 
 impl Mixture {
-    /// One expert alone, who says 0.
+    /// A single expert, which predicts 0.
     pub(crate) fn around_zero(scale: f32) -> Self {
         let weight = Lanes([1.0, 0.0, 0.0, 0.0]);
         Self { centre: Lanes::splat(0.0), sharpness: Lanes::splat(1.0 / scale), weight }
@@ -55,8 +55,8 @@ impl Mixture {
         (self.weight * tables.tail((self.centre - Lanes::splat(x)) * self.sharpness)).sum()
     }
 
-    /// How well each expert did, up to a common factor: trust times a density with heavy flanks at
-    /// the value that came. Cheaper than the exact mass, and as good for weighing experts.
+    /// How well each expert did, up to a common factor: its weight times a density with heavy tails at
+    /// the decoded value. Cheaper than the exact mass, and as good for weighing experts.
     #[inline(always)]
     pub(crate) fn scores(&self, value: f32) -> Lanes {
         /// Variance of the rounding to integers.

@@ -4,7 +4,7 @@
 /// Total of a probability: `p / 65536` is the chance of a one.
 pub(crate) const PROBABILITY_ONE: u32 = 1 << 16;
 const RENORMALISE_BELOW: u32 = 1 << 24;
-/// Zeros behind a payload that a decoder may read: encoders leave out no more.
+/// Zeros after a payload that a decoder may read: encoders leave out no more.
 const MAX_MISSING_ZEROS: usize = 8;
 
 /// One side of the coder. Passes are written once over this trait: the encoder returns the bit it
@@ -32,7 +32,7 @@ pub(crate) trait BitCoder {
         false
     }
 
-    /// True if a payload was cut and bits are guessed from here on.
+    /// True if a payload was cut and bits are predictions from here on.
     fn is_guessing(&self) -> bool {
         false
     }
@@ -117,7 +117,7 @@ impl BitCoder for RangeEncoder {
     }
 }
 
-/// Where a decoder stands in its payload.
+/// The position of a decoder in its payload.
 #[derive(Clone)]
 pub(crate) struct RangeState {
     code: u32,
@@ -157,7 +157,7 @@ impl<'a> RangeDecoder<'a> {
         Self { code, range, bytes, next, end: bytes.len() + MAX_MISSING_ZEROS, is_cut: false }
     }
 
-    /// Bytes read, or asked for behind the end.
+    /// Bytes read, or asked for after the end.
     pub(crate) fn position(&self) -> usize {
         self.next
     }

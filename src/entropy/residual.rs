@@ -1,7 +1,7 @@
 //! An integer coded around a real prediction of it (`format/SPEC.md`, section 6.4).
 //!
 //! The prediction is a density: a centre and a scale. Its share of the mass on either side of each
-//! binary decision goes into the mixer beside the adaptive contexts, which correct its shape.
+//! binary decision goes into the mixer with the adaptive contexts, which correct its shape.
 
 use super::context_mixer::{MixedBit, Mixing};
 use super::mixture::Mixture;

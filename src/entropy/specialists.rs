@@ -1,5 +1,5 @@
 //! What the profile *max* adds to mixed bits (`format/SPEC.md`, section 6.3): each value of the first contexts
-//! has weights of its own, and corrects the probability that comes out.
+//! has its own weights, and corrects the resulting probability.
 
 use super::context_mixer::{Counter, WeightSet};
 use super::range_coder::PROBABILITY_ONE;
@@ -13,9 +13,9 @@ pub(super) const MOST: usize = 3;
 const CAUTION: f32 = 4.0;
 /// Weight a context starts with.
 pub(super) const INITIAL_WEIGHT: f32 = 0.25;
-/// Say of the weights of one value beside those of the set.
+/// Share of the weights of one value, relative to those of the set.
 const SHARE: f32 = 0.3;
-/// They learn so many times as fast.
+/// They learn this many times as fast.
 const EAGERNESS: f32 = 2.0;
 
 /// Steps between the log-odds that are corrected one by one, and their width.
@@ -27,13 +27,13 @@ const LAST_PLACE: f32 = 15.99;
 const FIRST_AGE: u32 = 12;
 const OLDEST_AGE: u32 = 250;
 
-/// No bit has come with this value of a context.
+/// No bit has been coded with this value of a context.
 const NONE: u32 = u32::MAX;
 
 /// Specialists for the values of the first contexts of a bit.
 #[derive(Clone)]
 pub(super) struct Specialists {
-    /// Index of the specialist of each value, made when it first has a say.
+    /// Index of the specialist of each value, made when it is first used.
     of_slot: Vec<u32>,
     list: Vec<Specialist>,
     first: Specialist,
@@ -49,7 +49,7 @@ struct Specialist {
     corrections: [Counter; STEPS + 1],
 }
 
-/// What the specialists of up to [`MOST`] contexts say of a bit.
+/// What the specialists of up to [`MOST`] contexts say about a bit.
 pub(super) struct Opinion {
     n: usize,
     specialists: [usize; MOST],
@@ -81,7 +81,7 @@ impl Specialists {
         self.say[age as usize]
     }
 
-    /// Their opinion where the weights of a set say `by_set`; `slots` are those of all contexts.
+    /// Their prediction where the weights of a set say `by_set`; `slots` are those of all contexts.
     #[inline(never)]
     pub(super) fn judge(
         &mut self,

@@ -25,7 +25,7 @@ pub(crate) mod stream {
 const SOME_VERTICES: u32 = 1000;
 const MANY_VERTICES: u32 = 8000;
 
-/// The stream that stands for each, in a pass that brings so many vertices.
+/// The stream that each stream shares in a pass that adds this many vertices.
 fn merged(vertices: u32) -> [u8; stream::COUNT] {
     use stream::{GROW, IN_PATCH, SYMBOLS};
     std::array::from_fn(|i| {
@@ -83,8 +83,8 @@ pub(crate) struct StreamReader {
 }
 
 impl StreamReader {
-    /// Unpacks the payload of a pass that brings so many vertices; its streams may take `most` bytes. `None`
-    /// if it is no such payload.
+    /// Unpacks the payload of a pass that adds this many vertices; its streams may take `most` bytes. `None`
+    /// if it is not such a payload.
     pub(crate) fn new(payload: &[u8], vertices: u32, most: u64) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let (method, size) = (reader.u8()?, reader.varint()?);
@@ -193,7 +193,7 @@ pub(crate) struct StreamWriter {
 
 #[cfg(any(feature = "encoder", test))]
 impl StreamWriter {
-    /// A payload of a pass that brings so many vertices.
+    /// A payload of a pass that adds this many vertices.
     pub(crate) fn new(vertices: u32) -> Self {
         Self {
             merged: merged(vertices),

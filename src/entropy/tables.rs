@@ -100,8 +100,8 @@ impl Tables {
     }
 }
 
-/// The whole part of `x`, or the nearest end of `0..count`; 0 if `x` is no number. `count` is at most 2^16: processors
-/// have what cuts a float to 16 bits, to the sizes of pointers it takes many steps.
+/// The whole part of `x`, or the nearest end of `0..count`; 0 if `x` is not a number. `count` is at most
+/// 2^16: processors have what cuts a float to 16 bits, to the sizes of pointers it takes many steps.
 #[inline(always)]
 pub(crate) fn index_below(x: f32, count: usize) -> usize {
     usize::from(x as u16).min(count - 1)

@@ -82,8 +82,8 @@ impl Stream {
         }
     }
 
-    /// Makes the sizes of all tables those of the chunks that are there. `order`: what is announced comes in the order in
-    /// which it stands.
+    /// Sets the sizes in all tables to those of the chunks that are there. `order`: the index lists trailing
+    /// chunks in the order in which they are.
     pub(super) fn mend(&mut self, order: bool) {
         let announced = if order { Some(self.announced()) } else { None };
         let sizes: Vec<(u8, u32)> = self.chunks.iter().map(|c| (c.kind, c.payload.len() as u32)).collect();
@@ -96,7 +96,7 @@ impl Stream {
         }
     }
 
-    /// Glue and trailing chunks as they stand.
+    /// Stitching and other trailing chunks as they are.
     fn announced(&self) -> ChunkIndex {
         let mut announced = ChunkIndex::default();
         let mut num_passes = 0;
@@ -153,7 +153,7 @@ impl Stream {
     }
 }
 
-/// The announced chunks with the sizes of those that are there; `None` if they make no sense.
+/// The index of trailing chunks with the sizes of those that are there; `None` if it makes no sense.
 fn resized(payload: &[u8], chunks: &[(u8, u32)]) -> Option<Vec<u8>> {
     let mut announced = ChunkIndex::read(payload)?;
     let sizes = |kind: u8| chunks.iter().filter(move |chunk| chunk.0 == kind).map(|chunk| chunk.1);

@@ -35,8 +35,9 @@ pub fn decode(data: &[u8]) {
     check_stream(&stream_from(data));
 }
 
-/// Chunks that are moved, doubled, left out, exchanged, renamed or changed are that, too. The first byte counts the changes,
-/// three bytes each; a stream follows. Checksums, sizes, and what announces them are mended, so that damage reaches deep.
+/// Chunks that are moved, doubled, left out, exchanged, renamed or changed are that, too. The first byte
+/// counts the changes, three bytes each; a stream follows. Checksums, sizes and the index of trailing chunks
+/// are repaired, so that damage reaches deep.
 pub fn rearrange(data: &[u8]) {
     let Some((&head, rest)) = data.split_first() else { return };
     let Some((changes, stream)) = rest.split_at_checked(3 * usize::from(head % 16)) else { return };
@@ -128,7 +129,7 @@ pub fn split_independent(data: &[u8]) {
     }
 }
 
-/// What a decoder told while bytes were pushed.
+/// What a decoder reported while bytes were pushed.
 struct Trace {
     decoder: Decoder,
     updates: Vec<(Update, Option<u32>)>,
@@ -216,8 +217,8 @@ pub fn round_trip(data: &[u8]) {
     }
 }
 
-/// Attributes of every domain that come back exactly, any floats only if all bits are kept. The first number says which, the
-/// second how often rows differ.
+/// Attributes of every domain that decode exactly, any floats only if all bits are kept. The first number
+/// says which, the second how often rows differ.
 fn attributes_of(mesh: &TriMesh, [which, seams]: [u8; 2], is_lossless: bool) -> Attributes {
     let mix = |a: usize, b: usize| (a.wrapping_mul(2_654_435_761) ^ b.wrapping_mul(40_503)) >> 3;
     let every = 1 + usize::from(seams);
@@ -407,7 +408,7 @@ fn ignore_panics_of_laz() {
     });
 }
 
-/// Whether two attributes look the same from every corner, but for values that one of them lacks.
+/// Whether two attributes look the same from every corner, except for values that one of them lacks.
 fn have_equal_values(mesh: &TriMesh, a: &Attribute, b: &Attribute) -> bool {
     let n = a.num_components;
     let value = |attribute: &Attribute, triangle: usize, corner: usize| {

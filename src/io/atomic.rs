@@ -14,7 +14,7 @@ const BUFFER_BYTES: usize = 1 << 18;
 /// Links to links that are followed before they are taken for a circle; Linux does the same.
 const MAX_LINKS: usize = 40;
 
-/// Writes the file `path` with `write`: into a temporary file beside it, renamed to `path` at the end.
+/// Writes the file `path` with `write`: into a temporary file next to it, renamed to `path` at the end.
 ///
 /// If anything fails, the temporary file is removed and what was at `path` before is still there. The new file is
 /// on the disk before it has its name, so that the name never leads to half a file, power cuts included. A
@@ -70,7 +70,8 @@ fn followed(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many symbolic links"))
 }
 
-/// Makes a new name last. Not every system can, and the file itself is safe: an error is none of the caller's.
+/// Makes a new name durable. Not every system can, and the file itself is safe: callers need not know of an
+/// error.
 fn sync_directory(directory: &Path) {
     if cfg!(unix) {
         let _ = File::open(directory).and_then(|directory| directory.sync_all());

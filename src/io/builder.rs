@@ -24,13 +24,13 @@ pub(super) struct MeshBuilder {
 }
 
 impl MeshBuilder {
-    /// For a file of so many bytes.
+    /// For a file of this many bytes.
     #[cfg(any(feature = "gltf", feature = "las"))]
     pub fn for_file(num_bytes: usize) -> Self {
         Self { num_bytes, ..Self::default() }
     }
 
-    /// Whether so many attributes may have an index for each of `num_elements`.
+    /// Whether this many attributes may have an index for each of `num_elements`.
     ///
     /// # Errors
     /// If that is out of proportion to the file.

@@ -118,7 +118,7 @@ impl Format {
     }
 
     /// The format that the ending of `path` names, in any case; a further `.zst` is looked past.
-    /// `None` if the ending is none of ours.
+    /// `None` if the ending is not one of ours.
     pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
         format_and_compression(path.as_ref()).map(|(format, _)| format)
     }
@@ -173,8 +173,8 @@ pub struct ReadReport {
     pub faces_skipped: usize,
     /// STL and glTF: corners or vertices that were joined with an earlier one at exactly the same place.
     pub corners_welded: usize,
-    /// LAS only: points that are no vertices, because they lie above another, are not the last return, or were
-    /// thinned out.
+    /// LAS only: points that are not vertices, because they lie above another, are not the last return, or
+    /// were thinned out.
     pub points_left_out: usize,
     /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
     /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`).
@@ -394,7 +394,8 @@ pub fn write_to(out: impl Write, mesh: &TriMesh, format: Format) -> Result<(), W
 ///
 /// - OBJ: normals, texture coordinates and a colour per vertex, one set each; names of materials, groups and
 ///   objects.
-/// - PLY: whatever belongs to vertices and faces and is no name, in its type; attributes of corners if they
+/// - PLY: whatever belongs to vertices and faces and is not a name, in its type; attributes of corners if
+/// they
 ///   have no seam, and one set of texture coordinates if they have.
 /// - STL: nothing.
 /// - glTF: normals, made unit vectors; texture coordinates, colours and what else vertices and corners have, in

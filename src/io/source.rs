@@ -8,14 +8,14 @@ const PIECE_BYTES: usize = 1 << 16;
 
 /// What is left of a file.
 ///
-/// A parser sees the end of the file where reading fails; [`Source::finish`] tells what it was. That is worth
-/// more than whatever the parser makes of the end, so it comes first.
+/// A parser sees the end of the file where reading fails; [`Source::finish`] returns what it was. That is
+/// worth more than whatever the parser makes of the end, so it comes first.
 pub(super) struct Source<'a> {
     reader: Box<dyn Read + 'a>,
     /// All bytes of the file, where they are known before they are read.
     num_bytes: Option<u64>,
     buffer: Vec<u8>,
-    /// What of the buffer comes next.
+    /// What comes next of the buffer.
     start: usize,
     /// Bytes of the file in front of the buffer.
     num_before: usize,
@@ -175,7 +175,7 @@ impl<'a> Source<'a> {
         true
     }
 
-    /// Puts a piece behind the buffer.
+    /// Appends a piece to the buffer.
     fn read_more(&mut self) -> bool {
         if self.is_at_end {
             return false;
@@ -183,7 +183,7 @@ impl<'a> Source<'a> {
         let held = self.buffer.len();
         let piece = self.reader.by_ref().take(PIECE_BYTES as u64).read_to_end(&mut self.buffer);
         self.is_at_end = !matches!(piece, Ok(1..));
-        // What unpacks a file has a reason of its own.
+        // The unpacker has its own reason.
         self.failure = piece.err().map(|error| error.downcast().unwrap_or_else(ReadError::Io));
         self.buffer.len() > held
     }

@@ -16,7 +16,7 @@ use std::{
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// How many bytes a `.zst` file may unpack to for each of its own, beyond [`ReadOptions::free_bytes`].
+    /// How many bytes each byte of a `.zst` file may unpack to, beyond [`ReadOptions::free_bytes`].
     /// Default: 1000. Meshes have 2 to 30, and zstd goes up to 32,768.
     pub max_ratio: u64,
     /// Bytes that any `.zst` file may unpack to. Default: 256 MiB.
@@ -44,7 +44,7 @@ impl ReadOptions {
         if is_compressed {
             return Ok((Source::new(Limited::new(Unpacker::new(file, self)?), None), format));
         }
-        // What is no regular file, such as a pipe, does not know how long it is.
+        // Anything but a regular file, such as a pipe, does not know its length.
         let metadata = file.metadata()?;
         let num_bytes = metadata.is_file().then_some(metadata.len());
         if num_bytes.is_some_and(|num_bytes| num_bytes > MAX_FILE_BYTES) {
@@ -107,7 +107,7 @@ impl Unpacker {
     }
 
     /// # Errors
-    /// If more has come out than may.
+    /// If more was unpacked than is allowed.
     fn check(&self) -> Result<(), ReadError> {
         let packed = self.decoder.get_ref().get_ref().num_bytes;
         let most = packed.saturating_mul(self.options.max_ratio).max(self.options.free_bytes);

@@ -28,7 +28,7 @@ impl Surface {
         Self::try_from_triangles(triangles, num_vertices).map_err(|(_, error)| error)
     }
 
-    /// As [`from_triangles`](Self::from_triangles), with the triangles back if they are no surface.
+    /// As [`from_triangles`](Self::from_triangles), with the triangles back if they are not a surface.
     pub(super) fn try_from_triangles(
         triangles: Vec<[u32; 3]>,
         num_vertices: usize,

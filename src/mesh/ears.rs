@@ -1,5 +1,5 @@
 //! The rule by which small holes are closed where the size of a stream counts: the corner of least
-//! valence is cut off first, of several the one with the shortest cut. Encoders make triangles by
+//! valence is cut off first, among several the one with the shortest cut. Encoders make triangles by
 //! it, and both sides ask whether triangles look as if they were made so (`format/SPEC.md`,
 //! section 7.2).
 //!
@@ -7,7 +7,7 @@
 
 /// Most corners of a hole.
 pub(crate) const MAX_CORNERS: usize = 8;
-/// Largest valence that the rule tells apart.
+/// Largest valence that the rule distinguishes.
 pub(crate) const MAX_VALENCE: u32 = 200;
 
 /// A byte for each corner.
@@ -67,7 +67,8 @@ impl Bytes {
     pub(crate) fn corners_with(self, value: u8) -> Corners {
         const LOW: u64 = 0x7f7f_7f7f_7f7f_7f7f;
         let differ = self.0 ^ (u64::from(value) * 0x0101_0101_0101_0101);
-        // Of a byte that is not 0 either the highest bit is set, or what is added to the rest carries into it.
+        // In a byte that is not 0, either the highest bit is set, or what is added to the rest carries into
+        // it.
         Corners(!(((differ & LOW) + LOW) | differ | LOW))
     }
 
@@ -108,7 +109,7 @@ impl Iterator for Corners {
 /// A hole that is closed ear by ear.
 pub(crate) struct Hole {
     /// Corners left, counter-clockwise: what they are called, and their valence less any constant. No valence is as large
-    /// as what stands behind the last one.
+    /// as the filler after the last one.
     names: Bytes,
     valences: Bytes,
     count: usize,
@@ -193,7 +194,7 @@ impl Hole {
         (usize::from(self.names.get(place)), self.valences.get(place))
     }
 
-    /// Cuts an ear off: the corners beside it get an edge more.
+    /// Cuts an ear off: the corners next to it get one more edge.
     #[inline(always)]
     pub(crate) fn cut(&mut self, ear: Ear) {
         let [before, after] = self.beside(ear.place);

@@ -20,7 +20,7 @@ pub struct RepairReport {
 /// A mesh cut into an oriented surface.
 pub(crate) struct Repaired {
     pub(crate) surface: Surface,
-    /// For each vertex of `surface` the vertex of the mesh it stands for. Ascending, so that ties of
+    /// For each vertex of `surface` its vertex in the mesh. Ascending, so that ties of
     /// Algorithm 1 break by the indices of the mesh.
     pub(crate) source: Vec<u32>,
     #[cfg_attr(not(any(feature = "experiment", test)), allow(dead_code))] // Only the experiment tells it.
@@ -46,7 +46,7 @@ pub(crate) fn repair(mesh: &TriMesh) -> Repaired {
 }
 
 /// Cuts triangles of three different vertices each into sheets: the surface, whose faces keep their order and
-/// rotation, and for each vertex of it the vertex it stands for, ascending.
+/// rotation, and for each of its vertices the vertex of the mesh, ascending.
 pub(crate) fn cut(triangles: Vec<[u32; 3]>, num_vertices: usize) -> (Surface, Vec<u32>) {
     // Most meshes are a surface as they are.
     let triangles = match Surface::try_from_triangles(triangles, num_vertices) {
@@ -93,7 +93,7 @@ fn pair_edges(triangles: &[[u32; 3]], num_vertices: usize) -> Vec<u32> {
     opposite
 }
 
-/// Gives each fan of faces a vertex of its own, in the order of the vertices; fans at one vertex in
+/// Gives each fan of faces its own vertex, in the order of the vertices; fans at one vertex in
 /// the order of their first faces.
 fn name_fans(triangles: &[[u32; 3]], opposite: &[u32]) -> (Vec<[u32; 3]>, Vec<u32>) {
     let mut named = vec![[u32::MAX; 3]; triangles.len()];

@@ -1,4 +1,4 @@
-//! Where the meshes of a scene stand.
+//! The instances of the meshes of a scene.
 
 /// A mesh in its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,11 +14,11 @@ pub struct Instance {
 /// The transform that changes nothing.
 pub const IDENTITY: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-/// What a stream says of a scene: its meshes share the stream's grid, each times a power of two.
+/// What a stream says about a scene: its meshes share the stream's grid, each times a power of two.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneTable {
-    /// Of each mesh: its own coordinates times 2 to this power are those of the stream.
+    /// One per mesh: its own coordinates times 2 to this power are those of the stream.
     pub exponents: Vec<i8>,
-    /// Where meshes stand.
+    /// The instances of the meshes.
     pub instances: Vec<Instance>,
 }

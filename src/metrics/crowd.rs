@@ -1,10 +1,10 @@
 //! The nearest triangles of many points at once, for where boxes do not help: all triangles are about equally far, or
 //! each box holds most of the others.
 //!
-//! Of a ball of points only the triangles count that are at most its diameter farther from its centre than the nearest
-//! one. The points are halved, and each half looks at what is left, so that n triangles and m points of a surface
-//! cost about n √m looks. Most looks are at two planes: a triangle lies in its own, and beyond the one through its point nearest
-//! to any place and across the way there.
+//! For a ball of points, only the triangles count that are at most its diameter farther from its centre than
+//! the nearest one. The points are halved, and each half looks at what is left, so that n triangles and m
+//! points of a surface cost about n √m looks. Most looks are at two planes: a triangle lies in its own, and
+//! beyond the one through its point nearest to any place and across the way there.
 
 use super::nearest::bounds;
 use crate::mesh::triangle::{nearest_point, squared_distance};
@@ -23,7 +23,7 @@ pub(super) struct Waiting {
 const FEW_POINTS: usize = 2;
 const FEW_TRIANGLES: usize = 16;
 
-/// After so many halvings triangles may be seen anew.
+/// After this many halvings triangles may be looked at again.
 const RENEWED: usize = 4;
 
 /// Fewer points are not worth another thread.
@@ -46,7 +46,7 @@ struct Candidate {
     support: HalfSpace,
 }
 
-/// Triangles as they were seen from the middle of a ball of points, so many halvings ago.
+/// Triangles as seen from the middle of a ball of points, some halvings ago.
 struct Seen {
     candidates: Vec<Candidate>,
     depth: usize,
@@ -197,7 +197,7 @@ impl<'a> Crowd<'a> {
         near.into_iter().filter(may_be_nearest).map(|(_, i)| i).collect()
     }
 
-    /// The candidates anew, with the half-spaces that show best what is far from points in a ball.
+    /// The candidates again, with the half-spaces that show best what is far from points in a ball.
     fn see_from(
         &self,
         centre: DVec3,

@@ -1,5 +1,6 @@
-//! Triangles of the base mesh M⁰ (`format/SPEC.md`, section 7.1), grown over their edges: around one vertex of the boundary
-//! until it is enclosed, then around the next one. Where the vertices lie follows in [`base_positions`](super::base_positions).
+//! Triangles of the base mesh M⁰ (`format/SPEC.md`, section 7.1), grown over their edges: around one vertex
+//! of the boundary until it is enclosed, then around the next one. The positions follow in
+//! [`base_positions`](super::base_positions).
 
 use super::base_positions::Placement;
 use super::work_budget::WorkBudget;
@@ -88,7 +89,7 @@ enum Tip {
     New = 0,
     /// The vertex before the pivot along the boundary: the pivot is enclosed now.
     BesidePivot = 1,
-    /// The one behind the gate's other end.
+    /// The one after the gate's other end.
     BesideEnd = 2,
     Far = 3,
 }
@@ -121,7 +122,7 @@ pub(crate) struct Grower<'a> {
     around: Vec<Around>,
     /// Corners that face a directed edge with no triangle beyond it yet.
     open: HashMap<(u32, u32), u32>,
-    /// Of these the ones that are to be looked at, the present one's first. The pivot is the vertex after a gate.
+    /// Those of them that are to be looked at, the current one's first. The pivot is the vertex after a gate.
     gates: VecDeque<u32>,
     models: BaseModels,
     last_tip: Tip,
@@ -225,7 +226,7 @@ impl<'a> Grower<'a> {
         Ok(())
     }
 
-    /// Codes what lies beyond the edge that `gate` faces.
+    /// Codes what is beyond the edge that `gate` faces.
     fn grow<B: BitCoder>(&mut self, coder: &mut B, gate: u32) -> Result<(), Malformed> {
         let beyond = self.target.map_or(NO_CORNER, |t| {
             let source = self.corner_source[(gate / 3) as usize];
@@ -268,8 +269,8 @@ impl<'a> Grower<'a> {
         Ok(())
     }
 
-    /// Codes the vertex beyond a gate. `sides`: corners that face the boundary edges before and behind it; `beside`: their
-    /// far ends.
+    /// Codes the vertex beyond a gate. `sides`: corners that face the boundary edges before and after it;
+    /// `beside`: their far ends.
     fn code_tip<B: BitCoder>(
         &mut self,
         coder: &mut B,

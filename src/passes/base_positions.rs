@@ -1,5 +1,6 @@
-//! Where the vertices of the base mesh lie (`format/SPEC.md`, section 7.1). Each is guessed from those of its neighbours
-//! that are placed already, as a vertex of a split is from its ring; the one of which most is known comes next.
+//! Positions of the vertices of the base mesh (`format/SPEC.md`, section 7.1). Each is predicted from those
+//! neighbours that are placed already, as a vertex of a split is from its ring; the one about which most is
+//! known comes next.
 
 use super::Malformed;
 use super::base::Base;
@@ -15,7 +16,7 @@ use crate::entropy::residual::{CALLER_CONTEXTS, Expectation, SIGN_CONTEXTS};
 use crate::entropy::tables::log2;
 use crate::util::simd4::Lanes;
 
-/// Roughness of a vertex that was guessed from no neighbour.
+/// Roughness of a vertex that was predicted from no neighbour.
 const UNKNOWN_ROUGHNESS: i8 = -16;
 /// Smallest scale of a jump, in grid steps.
 const LEAST_JUMP: f32 = 0.3;

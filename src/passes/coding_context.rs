@@ -37,9 +37,9 @@ enum Tip {
     Coarse(u32),
 }
 
-/// What is known of a base mesh while its vertices are placed.
+/// What is known about a base mesh while its vertices are placed.
 pub(crate) struct Fringe {
-    /// Of each placed one how far its place lies from the mean of its outlook.
+    /// For each placed vertex its displacement from the mean of its outlook.
     pub(crate) misses: Vec<Lanes>,
     /// Mean length of edges.
     pub(crate) edge: f32,

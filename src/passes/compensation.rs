@@ -1,6 +1,7 @@
-//! Where coarse meshes are shown (`format/SPEC.md`, section 9.4). Vertices that lie on a curved surface span triangles
-//! inside of it: the mesh shrinks, the more the coarser it is. A lifting scheme's update would move them; lazy wavelets have
-//! none, so vertices keep their places for ever and the decoder moves what it shows, by weights that the encoder fits.
+//! Where coarse meshes are shown (`format/SPEC.md`, section 9.4). Vertices on a curved surface span triangles
+//! inside it: the mesh shrinks, the more the coarser it is. A lifting scheme's update would move them; lazy
+//! wavelets have none, so vertices keep their positions for ever, and the decoder moves what it shows, by
+//! weights that the encoder fits.
 
 use crate::bitstream::compensation::Compensation;
 

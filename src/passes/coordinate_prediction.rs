@@ -30,13 +30,13 @@ const LEAST_TRUST: Lanes = Lanes([0.02, 0.02, 0.02, 0.0]);
 pub(super) const TRUST_LEVELS: usize = 16;
 /// Steepest slope of the surface over the two axes coded first that is believed.
 const MAX_SLOPE: f32 = 4.0;
-/// The expert who says that a neighbour's coordinate comes again, and the logarithm of his scale.
+/// The expert that predicts a neighbour's coordinate to repeat, and the logarithm of its scale.
 const REPEATED: usize = 3;
 const REPEATED_LOG_SCALE: f32 = -1.25;
-/// Weight beyond which residuals are counted from him.
+/// Weight beyond which residuals are counted from it.
 const REPEATED_LEADS: f32 = 0.2;
-/// His weights: where they start, as after so many coordinates; the least step and the least weight. Neighbours with the
-/// coordinate that are told apart.
+/// Its weights: where they start, and the number of coordinates that counts for; the least step and the least
+/// weight. The largest number of neighbours with the coordinate that is distinguished.
 const FIRST_REPEATED: Repeated = Repeated { weight: 0.2, count: 5.0 };
 const REPEATED_RATE: f32 = 0.01;
 const LEAST_REPEATED: f32 = 0.02;
@@ -51,7 +51,7 @@ pub(crate) struct PredictionModels {
     filters: Vec<[AffineFilter; 2]>,
     scales: [ScaleModel; NUM_KINDS],
     trust: [[Lanes; TRUST_LEVELS]; NUM_KINDS],
-    /// By how many neighbours have the coordinate, and how far it lies from the median.
+    /// By how many neighbours have the coordinate, and how far it is from the median.
     repeated: [[[Repeated; TRUST_LEVELS]; REPEATED_COUNTS]; NUM_KINDS],
 }
 
@@ -118,7 +118,7 @@ impl ScaleModel {
     }
 }
 
-/// The guess at one vertex, coordinate after coordinate. Lanes are axes.
+/// The prediction of one vertex, coordinate by coordinate. Lanes are axes.
 pub(crate) struct VertexPrediction<'a> {
     surroundings: &'a CodingContext,
     /// Axes in coding order.
@@ -143,7 +143,7 @@ pub(crate) struct VertexPrediction<'a> {
     errors: [f32; 3],
 }
 
-/// The guess at one coordinate. Lanes are experts.
+/// The prediction of one coordinate. Lanes are experts.
 pub(crate) struct CoordinatePrediction {
     pub(crate) axis: usize,
     /// Seen from the origin of the surroundings.
@@ -152,7 +152,7 @@ pub(crate) struct CoordinatePrediction {
     pub(crate) best: usize,
     pub(crate) log_scale: f32,
     /// Logarithms of lengths that contexts may use: expected size by the residuals of the ring, of
-    /// the outer vertices, by the coordinates already known, and disagreement of the guesses.
+    /// the outer vertices, by the coordinates already known, and disagreement of the predictions.
     pub(crate) by_ring: f32,
     pub(crate) by_tips: f32,
     pub(crate) by_known: f32,
@@ -288,9 +288,9 @@ impl<'a> VertexPrediction<'a> {
         }
     }
 
-    /// The neighbours' coordinate that is closest to `median`, the first one if equal, how far it lies from it, and how
-    /// many have it from there on, 1 to [`REPEATED_COUNTS`]: what is drawn along an axis, or lies in a plane across it, repeats
-    /// coordinates to the bit.
+    /// The neighbours' coordinate that is closest to `median`, the first one if equal, how far it is from it,
+    /// and how many have it from there on, 1 to [`REPEATED_COUNTS`]: what is drawn along an axis, or lies in
+    /// a plane across it, repeats coordinates to the bit.
     #[inline(always)]
     fn repeated(&self, axis: usize, median: f32) -> (f32, f32, usize) {
         let (mut repeated, mut least, mut count) = (0.0, MAX_CENTRE, 1);
@@ -363,7 +363,7 @@ pub(super) fn axis_order(normal: Lanes) -> [usize; 3] {
     }
 }
 
-/// The last coordinate is guessed along the normal, scaled so that its axis counts once: a guess
+/// The last coordinate is predicted along the normal, scaled so that its axis counts once: a prediction
 /// that lies elsewhere on the surface is moved along its tangent plane. Returns what the other two
 /// axes count.
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! Wavelet coefficients: where each odd vertex lies, relative to its prediction
+//! Wavelet coefficients: where each odd vertex is, relative to its prediction
 //! (`format/SPEC.md`, section 7.4).
 
 use super::coding_context::CodingContext;
@@ -75,7 +75,7 @@ pub(crate) fn code<B: BitCoder>(
     code_some(coder, models, mesh, patches, quantization_bits, target, &mut WorkBudget::unlimited()).map(drop)
 }
 
-/// Goes on from the first vertex that has no position; true if all have one, or a cut payload has told what
+/// Goes on from the first vertex that has no position; true if all have one, or a cut payload has given what
 /// it can.
 pub(crate) fn code_some<B: BitCoder>(
     coder: &mut B,

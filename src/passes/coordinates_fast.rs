@@ -16,7 +16,7 @@ const TIP_SHARE: f32 = 0.25;
 /// Expected sizes of residuals that streams of symbols tell apart, by powers of two.
 const CLASSES: usize = stream::NUM_SYMBOLS / 2;
 
-/// What is known of the vertices so far.
+/// What is known about the vertices so far.
 pub(crate) struct Located<'a> {
     pub(crate) positions: &'a mut Vec<[i32; 3]>,
     pub(crate) roughness: &'a mut Vec<[i8; 2]>,
@@ -52,7 +52,7 @@ pub(crate) fn code_vertex<B: BitCoder>(
         let [along, across] = roughness[v as usize];
         rough = [rough[0] + i32::from(along), rough[1] + i32::from(across)];
         normal += before.cross(p);
-        // Across the edge from the vertex before to this one; the first of an open ring is none.
+        // Across the edge from the vertex before to this one; an open ring has none at its first vertex.
         let tip = tips[(first + degree - 1 + i) % tips.len()];
         if tip != NO_CORNER && !(is_open && i == 0) {
             over.0 += before + p - point(tip);
@@ -72,13 +72,13 @@ pub(crate) fn code_vertex<B: BitCoder>(
     let symbols = [stream::SYMBOLS + class(rough[0]), stream::SYMBOLS + 1 + class(rough[1])];
     let axes = axis_order(normal);
     let slopes = slopes(normal, axes);
-    // How much further the vertex lies than guessed, along the axes so far.
+    // How much further the vertex is than predicted, along the axes so far.
     let mut missed = Lanes::ZERO;
     let mut position = [0; 3];
     let mut sizes = [0; 2];
     for (kind, axis) in axes.into_iter().enumerate() {
         let is_across = usize::from(kind == ACROSS);
-        // What lies elsewhere on the surface is moved along its tangent plane.
+        // A prediction elsewhere on the surface is moved along its tangent plane.
         let guess = if kind == ACROSS { guess.0[axis] - slopes.dot3(missed) } else { guess.0[axis] };
         // Within 32 bits, whatever the cells are.
         let nearest = round_half_up(guess.clamp(-1e9, 1e9));

@@ -1,5 +1,5 @@
-//! What chunks cost a decoder, from counts alone (`format/SPEC.md`, section 10): encoders see to it that their bytes earn
-//! it, decoders refuse those that do not.
+//! What chunks cost a decoder, from counts alone (`format/SPEC.md`, section 10): encoders make sure that
+//! their bytes earn it, decoders refuse streams that do not.
 //!
 //! A unit is one edge or triangle looked at. Each number is a bound on what a
 //! [`WorkBudget`](super::work_budget::WorkBudget) counts.
@@ -19,9 +19,10 @@ const REFINE_PER_TRIANGLE: u64 = 6;
 const WALK_PER_TRIANGLE: u64 = 5;
 /// Units of a split for each face after: stars are made, and looked at.
 const STARS_PER_TRIANGLE: u64 = 2;
-/// Units of a split for each vertex it brings: its place is predicted and decoded, which takes longer than a look.
+/// Units of a split for each vertex it adds: its position is predicted and decoded, which takes longer than a
+/// look.
 const PLACE_PER_VERTEX: u64 = 12;
-/// Units of glue for each vertex there is: all are sorted by their cells.
+/// Units of a stitching chunk for each vertex there is: all are sorted by their cells.
 const GLUE_PER_VERTEX: u64 = 4;
 /// Units of each exact position, of each element with exact values and of each of their components.
 const EXACT_PER_VERTEX: u64 = 12;
@@ -29,10 +30,10 @@ const VALUES_PER_ELEMENT: u64 = 4;
 const VALUES_PER_COMPONENT: u64 = 4;
 /// Units of the place of each vertex and each triangle in the file.
 const ORDER_PER_ELEMENT: u64 = 12;
-/// Units of a vertex or face that lies loose, and of what other chunks say of it.
+/// Units of an isolated vertex or a degenerate face, and of what other chunks say about it.
 const LOOSE_EACH: u64 = 4 + EXACT_PER_VERTEX + ORDER_PER_ELEMENT;
 
-/// Units that a stream may take by the end of so many bytes.
+/// Units that a stream may take by the end of this many bytes.
 pub(crate) fn earned(bytes: u64) -> u64 {
     FREE + PER_BYTE * bytes
 }
@@ -66,7 +67,7 @@ pub(crate) fn pass(row: &Pass, before: Counts, channels: u64) -> u64 {
     }
 }
 
-/// Units of glue behind a pass.
+/// Units of the stitching after a pass.
 pub(crate) fn glue(after: Counts) -> u64 {
     GLUE_PER_VERTEX * after.vertices
 }
@@ -76,7 +77,7 @@ pub(crate) fn exact(finest: Counts) -> u64 {
     EXACT_PER_VERTEX * finest.vertices
 }
 
-/// Units of exact values of an attribute that so many elements have.
+/// Units of the exact values of an attribute for this many elements.
 pub(crate) fn values(elements: u64, components: u64) -> u64 {
     (VALUES_PER_ELEMENT + VALUES_PER_COMPONENT * components) * elements
 }
@@ -86,7 +87,7 @@ pub(crate) fn order(finest: Counts) -> u64 {
     ORDER_PER_ELEMENT * (finest.vertices + finest.triangles)
 }
 
-/// Units of so many loose vertices and triangles.
+/// Units of this many isolated vertices and degenerate triangles.
 pub(crate) fn loose(count: u64) -> u64 {
     LOOSE_EACH * count
 }

@@ -31,7 +31,7 @@ const MODELLED: u64 = 32;
 /// Keys that a number may be off what was expected.
 const MOST_AWAY: u64 = 1 << 40;
 
-/// What is to be coded, for encoders: the key, if the number is on the ladder, and the number.
+/// What is to be coded, for encoders: the key, if the number is in the ordered set, and the number.
 pub(crate) type Keyed = Option<(Option<u64>, f64)>;
 
 /// Adaptive models of numbers of one kind, such as the coordinates of an axis.
@@ -201,5 +201,5 @@ pub(crate) fn code<B: BitCoder>(
     Ok(positions)
 }
 
-/// Key, if it is on the ladder, and value of each coordinate of a vertex.
+/// Key, if it is in the ordered set, and value of each coordinate of a vertex.
 pub(crate) type Target<'a> = &'a dyn Fn(usize) -> [(Option<u64>, f64); 3];

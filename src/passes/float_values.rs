@@ -1,4 +1,4 @@
-//! Numbers on ladders: the floats or decimals that something may be, each with a whole number as its key
+//! Ordered sets of numbers: the floats or decimals that something may be, each with a whole number as its key
 //! (`format/SPEC.md`, section 7.8).
 
 use crate::entropy::range_coder::PROBABILITY_ONE;
@@ -81,7 +81,7 @@ impl Ladder {
         }
     }
 
-    /// The key of a number that is on the ladder.
+    /// The key of a number that is in the ordered set.
     #[cfg(feature = "encoder")]
     pub(crate) fn key(self, x: f64) -> Option<u64> {
         let key = match self.steps {

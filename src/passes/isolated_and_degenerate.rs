@@ -1,4 +1,4 @@
-//! What is no part of a surface: vertices without triangles, triangles that name a vertex twice
+//! What is not part of a surface: vertices without triangles, triangles that name a vertex twice
 //! (`format/SPEC.md`, section 7.7).
 
 use super::numbers::Numbers;
@@ -6,12 +6,12 @@ use super::{EXHAUSTED, Malformed};
 use crate::bitstream::header::MAX_VERTICES_PER_BYTE;
 use crate::entropy::range_coder::BitCoder;
 
-/// Vertices behind those of the surface, and triangles behind its own.
+/// Vertices after those of the surface, and triangles after its own.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Loose {
     /// Cells at full precision.
     pub(crate) cells: Vec<[i32; 3]>,
-    /// Vertices of the mesh: those of the surface, joined, then the loose ones.
+    /// Indices of vertices of the mesh: the stitched ones, then the isolated ones.
     pub(crate) faces: Vec<[u32; 3]>,
 }
 
@@ -22,7 +22,7 @@ impl Loose {
     }
 }
 
-/// Codes how many vertices and how many faces are loose. A payload of `bytes` may bring
+/// Codes how many isolated vertices and degenerate faces there are. A payload of `bytes` may add
 /// [`MAX_VERTICES_PER_BYTE`] of both for each byte and one more.
 pub(crate) fn code_counts<B: BitCoder>(
     coder: &mut B,
@@ -40,7 +40,7 @@ pub(crate) fn code_counts<B: BitCoder>(
     Ok([num_cells, num_faces])
 }
 
-/// Codes what is loose in a mesh with `num_joined` vertices on its surface.
+/// Codes the isolated vertices and degenerate faces of a mesh with `num_joined` stitched vertices.
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     quantization_bits: u32,

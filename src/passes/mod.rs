@@ -57,7 +57,7 @@ impl GridMesh {
     }
 }
 
-/// What a payload is told that ends too early.
+/// The error of a payload that ends too early.
 pub(crate) const EXHAUSTED: &str = "a pass needs more bytes than it has";
 
 /// A payload names something that no encoder writes.

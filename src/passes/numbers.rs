@@ -5,7 +5,7 @@ use crate::entropy::range_coder::BitCoder;
 
 /// Largest number of digits of a number and one.
 const MAX_DIGITS: usize = 48;
-/// Digits behind the first that have models.
+/// Digits after the first that have models.
 const MODELLED: u32 = 3;
 /// Bits of one context: a unary code of the digits, the modelled digits of each length, a sign.
 const BITS: usize = MAX_DIGITS + (MAX_DIGITS << MODELLED) + 1;

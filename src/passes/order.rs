@@ -1,12 +1,12 @@
-//! The order of a file (`format/SPEC.md`, section 7.9): which vertex and which triangle comes next, told
-//! by what lies beside the last ones.
+//! The order of a file (`format/SPEC.md`, section 7.9): which vertex and which triangle comes next,
+//! named by what is next to the last ones.
 
 use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::entropy::range_coder::BitCoder;
 use crate::mesh::{CornersAt, TriMesh};
 
-/// Where the vertices and triangles of a mesh stand in the file.
+/// The places of the vertices and triangles of a mesh in the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Order {
     /// The vertex that comes at each place.
@@ -15,7 +15,7 @@ pub(crate) struct Order {
     pub(crate) corners: Vec<u32>,
 }
 
-/// Vertices or triangles that are looked at before a number is told in full.
+/// Vertices or triangles that are considered before a number is coded in full.
 const MOST_CANDIDATES: usize = 24;
 /// Places back whose neighbours are candidates.
 const DEPTH: usize = 6;
@@ -36,7 +36,7 @@ impl Order {
     }
 }
 
-/// Codes the order of a mesh of so many vertices with these triangles, degenerate ones included.
+/// Codes the order of a mesh of this many vertices with these triangles, degenerate ones included.
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     num_vertices: usize,

@@ -5,7 +5,7 @@ use super::Malformed;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 
-/// All patches of one level, in coding order. Patch `j` brings back vertex `first_vertex + j`.
+/// All patches of one level, in coding order. Patch `j` restores vertex `first_vertex + j`.
 ///
 /// A patch is a polygon of `d` corners, triangulated by `d − 2` faces; an ear is the polygon of two
 /// corners, without faces, along a boundary edge.
@@ -60,7 +60,7 @@ impl Patches {
         self.open_edges.push(open_edge);
     }
 
-    /// Triangles that the vertices bring: two each inside the surface, one at the boundary.
+    /// Triangles that the vertices add: two each inside the surface, one at the boundary.
     pub(crate) fn num_new_faces(&self) -> usize {
         self.open_edges.iter().map(|&e| if e == CLOSED { 2 } else { 1 }).sum()
     }

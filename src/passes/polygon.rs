@@ -28,7 +28,7 @@ impl Triangle {
         }
         let cut = self.cells[start].squared_distance(self.cells[end]);
         let other = self.cells[apex].squared_distance(tip);
-        // The first of least valence from the gate on, the tip standing behind the edge's start.
+        // The first of least valence from the gate on, the tip coming after the edge's start.
         let first_is_ear = || {
             let mut from_gate = [(b, false); 4];
             from_gate[apex + usize::from(apex > start)] = (a, true);
@@ -43,7 +43,7 @@ impl Triangle {
 /// The polygon of a patch.
 #[derive(Default)]
 pub(super) struct Polygon {
-    /// Where the corners lie, in the order in which they came.
+    /// Positions of the corners, in the order in which they came.
     cells: [Cell; MAX_CORNERS],
     outline: Outline,
 }

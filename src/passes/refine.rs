@@ -13,7 +13,7 @@ const OFFSETS: usize = 32;
 const OFFSETS_PER_STEP: f32 = 6.0;
 const SCALES: usize = 16;
 const LIMIT: u32 = 250;
-/// Least mass within a cell: a prediction that lies far away says nothing of its halves.
+/// Least mass within a cell: a prediction far away says nothing about its halves.
 const LEAST_MASS: f32 = 1e-6;
 
 /// Adaptive models, kept from pass to pass.

@@ -1,5 +1,5 @@
 //! Which vertices of the surface are one vertex of the mesh (`format/SPEC.md`, section 7.6). Where a mesh
-//! is not manifold an encoder cuts it into sheets; the glue joins them again.
+//! is not manifold, an encoder cuts it into sheets; the stitching joins them again.
 
 use super::numbers::Numbers;
 use super::{EXHAUSTED, GridMesh, Malformed};
@@ -7,10 +7,10 @@ use crate::entropy::context_mixer::PlainBits;
 use crate::entropy::range_coder::BitCoder;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 
-/// Candidates that have a context of their own.
+/// Candidates that have a separate context.
 const MAX_COUNTED: usize = 3;
 
-/// Adaptive models of glue.
+/// Adaptive models of the stitching.
 pub(crate) struct GlueModels {
     is_glued: PlainBits,
     pick: Numbers,
@@ -23,9 +23,9 @@ impl Default for GlueModels {
     }
 }
 
-/// Codes the glue of the vertices of `mesh` from `roots.len()` on. `roots[v]` is the first vertex of the mesh
-/// that is the same as v: v itself unless it is glued. `target`: a number for each vertex, equal for those
-/// that are the same.
+/// Codes the stitching of the vertices of `mesh` from `roots.len()` on. `roots[v]` is the first vertex of the
+/// mesh that is the same as v: v itself unless it is stitched to another. `target`: a number for each vertex,
+/// equal for those that are the same.
 ///
 /// Takes memory in proportion to the vertices.
 pub(crate) fn code<B: BitCoder>(
@@ -87,8 +87,8 @@ fn pick<B: BitCoder>(
     Some(candidates[last.saturating_sub(back as usize)])
 }
 
-/// Whether the vertex lies on the boundary, and whether the glue of a neighbour is known (1), or there is
-/// some (2).
+/// Whether the vertex lies on the boundary, and whether the root of a neighbour is known (1), or a neighbour
+/// is stitched to another vertex (2).
 fn around(mesh: &GridMesh, v: u32, roots: &[u32]) -> usize {
     let surface = &mesh.surface;
     let start = surface.corner_of[v as usize];

@@ -13,11 +13,11 @@ use crate::mesh::{ComponentType, MAX_COMPONENTS, NO_ENTRY, Values};
 use crate::util::bytes::Reader;
 use std::collections::HashMap;
 
-/// The ladders of an attribute's components; `None` if its rows are exact as they are, or need not be.
+/// The ordered sets of an attribute's components; `None` if its rows are exact as they are, or need not be.
 pub(crate) type Ladders = Option<Vec<Ladder>>;
 
-/// Reads what stands in front of the coded values: whether those of each attribute follow exactly, and the scales of
-/// their components. Also tells how many bytes that was.
+/// Reads what comes before the coded values: whether those of each attribute follow exactly, and the scales
+/// of their components. Also returns how many bytes that was.
 pub(crate) fn read_head(payload: &[u8], list: &[Declaration]) -> Option<(Vec<Ladders>, usize)> {
     let mut reader = Reader::new(payload);
     let mut used = 0;
@@ -59,7 +59,7 @@ pub(crate) fn scalar_of_inexact(declaration: &Declaration) -> Option<ComponentTy
     declaration.scalar.filter(|_| !matches!(declaration.coding, Coding::Table { .. }))
 }
 
-/// Whether numbers of a type have ladders of doubles.
+/// Whether the ordered sets for numbers of a type have doubles in them.
 pub(crate) fn is_wide(scalar: ComponentType) -> bool {
     scalar != ComponentType::F32
 }
@@ -85,11 +85,11 @@ fn length_of_directions(declaration: &Declaration) -> f64 {
     declaration.scalar.filter(|s| s.is_integer()).map_or(1.0, ComponentType::one)
 }
 
-/// What has values: elements of the surface, joined, then loose ones.
+/// What has values: stitched elements of the surface, then isolated vertices and degenerate faces.
 pub(crate) struct Elements<'a> {
     /// The rows of the surface.
     pub(crate) rows: &'a Rows,
-    /// Element of the surface, and of a corner its joined vertex; else 0.
+    /// Element of the surface, and of a corner its stitched vertex; else 0.
     pub(crate) on_surface: Vec<[u32; 2]>,
     pub(crate) num_loose: usize,
 }
@@ -100,15 +100,15 @@ pub(crate) struct Truth<'a> {
     pub(crate) values: &'a Values,
     /// Row of an element.
     pub(crate) row: &'a dyn Fn(usize) -> Option<usize>,
-    /// Channels of a loose element.
+    /// Channels of an additional element.
     pub(crate) loose: &'a dyn Fn(usize) -> Option<&'a [i32]>,
 }
 
-/// What the chunk tells of an attribute.
+/// What the chunk says about an attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Told {
     pub(crate) values: Values,
-    /// The row of each element: of all, or of the loose ones.
+    /// The row of each element: of all, or of the additional ones.
     pub(crate) of: Vec<u32>,
     pub(crate) is_exact: bool,
 }
@@ -157,7 +157,7 @@ fn last_row(values: &Values, num_components: usize) -> u32 {
     (values.len() / num_components) as u32 - 1
 }
 
-/// Channels of what lies loose: differences from one to the next.
+/// Channels of additional elements: differences from one to the next.
 struct LooseRows<'a> {
     declaration: &'a Declaration,
     is_missing: PlainBits,
@@ -211,7 +211,7 @@ struct ExactRows<'a> {
     /// Whether the last rows were the restored ones, the newest lowest.
     restored: usize,
     is_given: PlainBits,
-    /// Ways of the components that others tell.
+    /// Corrections of the components that the others determine.
     ways: Numbers,
     /// Scratch: what the channels stand for.
     plain: Values,
@@ -312,7 +312,7 @@ impl<'a> ExactRows<'a> {
             let [middle, half] = around(self.declaration, channels, k);
             let target = self.keyed(k, wanted);
             let number = if k == last {
-                // Two components of a direction tell the third but for its sign.
+                // Two components of a direction determine the third except for its sign.
                 let one = length_of_directions(self.declaration);
                 let rest = (0..n).filter(|&j| j != k).map(|j| numbers[j] * numbers[j]);
                 let size = rest.fold(one * one, |left, square| left - square).max(0.0).sqrt();
@@ -329,7 +329,7 @@ impl<'a> ExactRows<'a> {
         Ok(())
     }
 
-    /// The component of a direction that is farthest from 0, of several the first.
+    /// The component of a direction that is farthest from 0, the first among equals.
     fn largest(&self, channels: &[i32]) -> usize {
         let size = |k: usize| around(self.declaration, channels, k)[0].abs();
         (1..self.declaration.num_components).fold(0, |best, k| if size(k) > size(best) { k } else { best })

@@ -1,5 +1,5 @@
-//! What points around a vertex say of a function at the vertex itself: weighted means, and fits of an affine
-//! or a conformal function in the tangent plane (`format/SPEC.md`, section 8.4).
+//! What points around a vertex say about a function at the vertex itself: weighted means, and fits of an
+//! affine or a conformal function in the tangent plane (`format/SPEC.md`, section 8.4).
 
 use crate::util::simd4::Lanes;
 

@@ -19,10 +19,10 @@ pub(crate) struct Neighbourhood {
     pub(crate) coarse: (Lanes, u32),
 }
 
-/// What is known beside the points if the ring is known in part only.
+/// What else is known if only a part of the ring is known.
 #[derive(Default)]
 pub(crate) struct PartOfRing {
-    /// Sum of the ring's misses: how far its vertices lie from the means of their outlooks.
+    /// Sum of the ring's misses: how far its vertices are from the means of their outlooks.
     pub(crate) misses: Lanes,
     /// The parallelogram over the edge that was known first.
     pub(crate) oldest: Lanes,
@@ -32,7 +32,7 @@ pub(crate) struct PartOfRing {
     pub(crate) edge: f32,
 }
 
-/// What a neighbourhood says of the vertex inside.
+/// What a neighbourhood says about the vertex inside.
 #[derive(Clone, Copy)]
 pub(crate) struct Outlook {
     /// Mean of the ring.

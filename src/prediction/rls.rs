@@ -1,5 +1,5 @@
 //! Recursive least squares with forgetting, over any number of features: the filter of
-//! [`rls_affine`](super::rls_affine) for what is no coordinate (`format/SPEC.md`, sections 8.2 and 8.4).
+//! [`rls_affine`](super::rls_affine) for what is not a coordinate (`format/SPEC.md`, sections 8.2 and 8.4).
 
 /// Variance of the initial weights over that of the noise.
 const INITIAL_TRUST: f32 = 10.0;

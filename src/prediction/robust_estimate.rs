@@ -1,4 +1,4 @@
-//! Robust prediction: what most of many simple guesses agree on (`format/SPEC.md`, section 8.2).
+//! Robust prediction: what most of many simple predictions agree on (`format/SPEC.md`, section 8.2).
 //!
 //! On a regular stretch of a mesh (a scan's lattice, a CAD face) the middle of two opposite
 //! neighbours and each parallelogram name the vertex almost exactly, save the few that reach across
@@ -6,24 +6,25 @@
 
 use crate::util::simd4::Lanes;
 
-/// Guesses that are looked at; the rest of a large ring is left out.
+/// Predictions that are used; the rest of a large ring is left out.
 pub(crate) const MAX_GUESSES: usize = 16;
-/// With at least this many guesses the mode is the closest three, else the closest two.
+/// With at least this many predictions the mode is the closest three, else the closest two.
 const ENOUGH_FOR_THREE: usize = 5;
 
-/// Agreement of the guesses, coordinate by coordinate.
+/// Agreement of the predictions, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Consensus {
     pub(crate) median: Lanes,
     /// Distance between the quartiles.
     pub(crate) spread: Lanes,
-    /// Centre of the closest guesses.
+    /// Centre of the closest predictions.
     pub(crate) mode: Lanes,
     /// Distance between the outer ones of them.
     pub(crate) width: Lanes,
 }
 
-/// Puts pairs of the first so many values in order, one after the other, without a loop: all of them stay in registers.
+/// Puts pairs of the first values in order, one after the other, without a loop: all of them stay in
+/// registers.
 macro_rules! network {
     ($guesses:ident, [$count:literal] $($i:literal $j:literal),*) => {
         let mut v: [Lanes; $count] = std::array::from_fn(|i| $guesses.values[i]);
@@ -32,7 +33,7 @@ macro_rules! network {
     };
 }
 
-/// A short list of guesses.
+/// A short list of predictions.
 pub(crate) struct Guesses {
     values: [Lanes; MAX_GUESSES],
     count: usize,
@@ -45,7 +46,7 @@ impl Guesses {
         Self { values: [Lanes::splat(f32::INFINITY); MAX_GUESSES], count: 0 }
     }
 
-    /// Adds a guess if there is room.
+    /// Adds a prediction if there is room.
     #[inline(always)]
     pub(crate) fn insert(&mut self, value: Lanes) {
         if let Some(place) = self.values.get_mut(self.count) {
@@ -68,7 +69,7 @@ impl Guesses {
         }
     }
 
-    /// What they agree on. There must be one guess.
+    /// What they agree on. There must be one prediction.
     #[inline]
     pub(crate) fn consensus(&mut self) -> Consensus {
         self.sort();

@@ -21,7 +21,8 @@ const COLUMN_SLACK: f64 = 1e-6;
 const ALMOST_ONE: f64 = 1.0 - f64::EPSILON;
 /// Nearness, in samples, may be wrong by this part of the largest.
 const NEARNESS_SLACK: f64 = 1e-5;
-/// A triangle with less area, beside the square of its coordinates, is too thin to tell where it is hidden.
+/// A triangle with less area, relative to the square of its coordinates, is too thin to tell where it is
+/// hidden.
 const THIN: f64 = 1e-6;
 
 /// Rows of a picture that are drawn by one thread.

@@ -31,7 +31,7 @@ impl Default for View {
     }
 }
 
-/// The text is no view.
+/// The text is not a view.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("it is neither front, back, left, right, top, bottom nor AZIMUTH,ELEVATION in degrees")]
 pub struct UnknownView;

@@ -29,7 +29,7 @@ const MISSING: [f64; 3] = [f64::NAN; 3];
 
 impl CornerPaint {
     /// Colours as they are, normals as (n + 1) / 2, texture coordinates as red and green with a pattern of
-    /// squares; `None` for what is none of these. What has no value is magenta.
+    /// squares; `None` for anything else. What has no value is magenta.
     pub fn new(mesh: &TriMesh, attribute: &Attribute) -> Option<Self> {
         let colour: fn([f64; 3]) -> [u8; 3] = match (attribute.semantic, attribute.num_components) {
             (Semantic::Color(_), 1 | 3 | 4) => bytes,

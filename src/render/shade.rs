@@ -140,7 +140,7 @@ fn lit(base: [u8; 3], normal: DVec3, softness: f64) -> [u8; 3] {
     })
 }
 
-/// True at a surface beside which, one pixel away, is nothing or something much farther away.
+/// True at a surface next to which, one pixel away, there is nothing or something much farther away.
 fn is_outline(visible: &Visible, column: usize, row: usize, scale: usize, samples: [usize; 2]) -> bool {
     let at = row * visible.width + column;
     if visible.triangle[at] == NOTHING {

@@ -16,7 +16,8 @@ pub(crate) struct Anchors {
 }
 
 impl Anchors {
-    /// Takes the first edge of the first triangle of each component. The vertices `glued` stay as well.
+    /// Takes the first edge of the first triangle of each component. The stitched vertices `glued` stay as
+    /// well.
     pub(crate) fn new(surface: &Surface, glued: BitVec) -> Self {
         let mut seen: BitVec = BitVec::repeat(false, surface.triangles.len());
         let mut fixed = glued.clone();

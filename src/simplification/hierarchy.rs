@@ -21,7 +21,7 @@ const LEAST_SHARE: f64 = 0.02;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
     pub(crate) descriptor: Descriptor,
-    /// Of the level to come.
+    /// For the next level.
     pub(crate) window: Window,
     /// Factor of the radius from each level to the next coarser one.
     pub(crate) growth: f64,
@@ -56,7 +56,7 @@ pub(crate) struct Descent<'a> {
 }
 
 impl<'a> Descent<'a> {
-    /// Goes down from `surface`; the vertices `glued` always stay.
+    /// Goes down from `surface`; the stitched vertices `glued` always stay.
     pub(crate) fn new(surface: Surface, geometry: Geometry<'a>, settings: Settings, glued: BitVec) -> Self {
         let memory = ErrorMemory::new(&surface, geometry.positions);
         let anchors = Anchors::new(&surface, glued);

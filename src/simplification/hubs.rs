@@ -1,4 +1,4 @@
-//! Vertices with so many neighbours that nobody looks through them: the edges between two of them are known by heart.
+//! Vertices with too many neighbours to look through: the edges between two of them are kept in a table.
 
 use crate::mesh::Surface;
 use rustc_hash::FxHashSet;

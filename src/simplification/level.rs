@@ -52,7 +52,7 @@ impl Level {
         Self { vertices, faces, triangles }
     }
 
-    /// Calls `see` with the level as a mesh of its own; `positions` are those of the whole surface.
+    /// Calls `see` with the level as a separate mesh; `positions` are those of the whole surface.
     pub(crate) fn with_mesh<T>(&mut self, positions: &[[f64; 3]], see: impl FnOnce(&TriMesh) -> T) -> T {
         let triangles = std::mem::take(&mut self.triangles);
         let compact = self.vertices.iter().map(|&v| positions[v as usize]).collect();

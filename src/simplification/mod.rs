@@ -1,5 +1,6 @@
-//! From M^L down: which vertices of a level are removed, how their holes are closed, and the record from which an
-//! encoder brings them back. [`hierarchy`] goes from level to level, [`partition`] removes the odd vertices of one.
+//! From M^L down: which vertices of a level are removed, how their holes are closed, and the record from
+//! which an encoder restores them. [`hierarchy`] goes from level to level, [`partition`] removes the odd
+//! vertices of one.
 
 pub(crate) mod bucket_queue;
 pub(crate) mod canonical;

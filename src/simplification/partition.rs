@@ -139,7 +139,7 @@ pub(crate) fn remove_in_order(
 }
 
 /// Removes the vertices of `chosen`, none next to another, in the reverse of the order in which a decoder
-/// brings them back: the ears of the boundary last. Those that cannot go stay, which costs some bits where
+/// restores them: the ears of the boundary last. Those that cannot go stay, which costs some bits where
 /// the order then differs.
 #[expect(clippy::too_many_arguments, reason = "as above")]
 fn remove_as_decoded(
@@ -263,7 +263,7 @@ fn leave_seams(
 fn closely_packed(rings: &Rings, free: &[u32]) -> Vec<u32> {
     let largest = free.iter().map(|&v| rings.valence(v)).max().unwrap_or(0);
     let classes = PackingClasses::new(largest);
-    // Of each free vertex how many of its neighbours are next to a removed vertex.
+    // For each free vertex, how many of its neighbours are next to a removed vertex.
     let mut states = vec![Packing::STAYS; rings.len()];
     let class = |v: u32, Packing(touched): Packing| classes.of(rings.valence(v), usize::from(touched));
     let mut queue = ClassQueue::new(classes.count, rings.len());
@@ -306,8 +306,8 @@ fn closely_packed(rings: &Rings, free: &[u32]) -> Vec<u32> {
     chosen
 }
 
-/// What is known of a vertex while others are chosen: if it is free, the number of neighbours that are next to a
-/// removed vertex.
+/// What is known about a vertex while others are chosen: if it is free, the number of neighbours that are
+/// next to a removed vertex.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 struct Packing(u8);
 

@@ -1,4 +1,4 @@
-//! What a surface remembers of the vertices that went: plane quadrics of the original faces, handed
+//! What a surface remembers about removed vertices: plane quadrics of the original faces, handed
 //! on from each removed vertex to a neighbour (Garland and Heckbert; section 5.1 of the paper names
 //! the property). So errors are measured against M^L, not against the level before.
 
@@ -82,8 +82,8 @@ impl<'a> ErrorMemory<'a> {
         Self { positions, quadrics, area }
     }
 
-    /// The neighbour into which the star's vertex collapses with the least error, the first one of several, and that
-    /// error: area times squared distance. At a boundary only the ends of the ring count.
+    /// The neighbour into which the star's vertex collapses with the least error, the first among equals, and
+    /// that error: area times squared distance. At a boundary only the ends of the ring count.
     pub(crate) fn least_error(&self, star: &Star) -> (f64, u32) {
         self.heir(star).0
     }

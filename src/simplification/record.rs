@@ -31,7 +31,7 @@ impl Removed<'_> {
         self.ring.len() == self.faces.len()
     }
 
-    /// Slots in which the patch stands after removal.
+    /// Slots of the patch after removal.
     pub(crate) fn patch(&self) -> &[u32] {
         &self.faces[..self.ring.len() - 2]
     }

@@ -1,4 +1,4 @@
-//! Which triangles close the hole of a removed vertex: those that lie closest to what was there, or
+//! Which triangles close the hole of a removed vertex: those that are closest to what was there, or
 //! those that are cheaper to code if they are not much worse.
 //!
 //! Departs from section 6 of the paper, which collapses along the shortest legal edge: measured by the
@@ -10,8 +10,8 @@ use super::seams::Demand;
 use super::triangulate::EarClipper;
 use super::{Star, SurfaceEditor};
 
-/// A vertex stays for now if the best legal hole deviates so many times more (squared) than the best of all:
-/// what is illegal this time was what the vertex was judged by.
+/// A vertex stays for now if the best legal hole deviates this many times more (squared) than the best of
+/// all: what is illegal this time was what the vertex was judged by.
 const UNFIT: f64 = 8.0;
 /// Deviations below this share of the star's extent are as good as none: a fiftieth of its spokes.
 const SMALL: f64 = 4e-4;
@@ -152,8 +152,8 @@ impl HoleFiller {
         self.choose(surface, star, grid, tolerance, Demand::None, (deviation, Some(target)))
     }
 
-    /// The legal fan that deviates least, the first one of several, and whether that is much more than the
-    /// least of all. `see` is told of each legal one that does not deviate more than those before.
+    /// The legal fan that deviates least, the first among equals, and whether that is much more than the
+    /// least of all. `see` is called with each legal one that does not deviate more than those before.
     fn best_fan(
         &mut self,
         star: &Star,

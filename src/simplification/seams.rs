@@ -1,8 +1,8 @@
 //! Seams while a surface shrinks: where corners at a vertex, or faces at an edge, have different rows of an attribute.
 //!
-//! A decoder that brings a vertex back gives each triangle of its star what the patch had at the same edge of the
-//! hole. That is right without a further bit if a seam that runs through the vertex, in along one spoke and out along
-//! another, becomes the diagonal between their ends:
+//! A decoder that restores a vertex gives each triangle of its star what the patch had at the same edge of
+//! the hole. That is right without a further bit if a seam that runs through the vertex, in along one spoke
+//! and out along another, becomes the diagonal between their ends:
 //!
 //! ```text
 //!      · ───── a            · ───── a
@@ -183,7 +183,7 @@ impl Seams {
     }
 
     /// The vertex of `star` has gone: notes in `record` what its faces had, and gives rows to the triangles of the
-    /// hole, which stand in the star's first faces. `ears` as in [`SurfaceEditor::remove`].
+    /// hole, which are in the star's first faces. `ears` as in [`SurfaceEditor::remove`].
     pub(crate) fn remove(&mut self, star: &Star, ears: &[usize], record: &mut LevelRecord) {
         if self.is_empty() {
             return;

@@ -33,7 +33,8 @@ pub(crate) struct SurfaceEditor {
     pub(crate) surface: Surface,
     num_vertices: usize,
     num_faces: usize,
-    /// Of each vertex the bits of all neighbours that it has or had: who is not among them is none.
+    /// For each vertex the bits of all neighbours that it has or had: a vertex not among them is not a
+    /// neighbour.
     acquaintances: Vec<u32>,
     hubs: Hubs,
     /// Scratch: neighbours of the polygon corners and the corner across each polygon edge.
@@ -70,7 +71,7 @@ impl SurfaceEditor {
         }
     }
 
-    /// Forgets the neighbours that were; `rings` are those of all vertices.
+    /// Forgets the former neighbours; `rings` are those of all vertices.
     pub(crate) fn forget(&mut self, rings: &Rings, vertices: &[u32]) {
         for (&v, place) in vertices.iter().zip(0..) {
             let bits = rings.of(place).iter().map(|&u| bit(vertices[u as usize]));
@@ -183,7 +184,7 @@ impl SurfaceEditor {
 
     /// Takes the vertex of `star` out and closes the hole by cutting ears: `ears[k]` is the ring
     /// index whose corner the k-th triangle cuts off; `degree − 2` of them. Returns the slots of the
-    /// star's faces: the new triangles stand in the first ones, in order.
+    /// star's faces: the new triangles are in the first ones, in order.
     pub(crate) fn remove(&mut self, star: &Star, ears: &[usize]) -> &[u32] {
         let degree = star.degree();
         debug_assert_eq!(ears.len(), degree - 2);

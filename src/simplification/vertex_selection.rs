@@ -4,7 +4,7 @@
 use super::SurfaceEditor;
 use rayon::prelude::*;
 
-/// What the partition by weighted error gives up for what.
+/// How the partition by weighted error weighs its aims.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Optimize {
@@ -56,7 +56,7 @@ impl Thinning {
         Self { protected, outlier, max_valence, tolerance }
     }
 
-    /// Of a level of so many vertices.
+    /// For a level of this many vertices.
     pub(crate) fn of_level(optimize: Optimize, num_vertices: usize, surface: &SurfaceEditor) -> Self {
         let num_finest = surface.surface.corner_of.len();
         Self::of(optimize, num_vertices as f64 > FINE_SHARE * num_finest as f64)
@@ -78,7 +78,7 @@ impl Thinning {
         usual.clamp(part(MOST_OUTLIERS).min(most), most)
     }
 
-    /// Most vertices come back in the finest levels: there the cost of coding counts, before that
+    /// Most vertices are restored in the finest levels: there the cost of coding counts, before that
     /// the shape.
     fn of(optimize: Optimize, is_fine: bool) -> Self {
         match (optimize, is_fine) {
@@ -93,7 +93,8 @@ impl Thinning {
 /// Levels with more than this share of all vertices are fine.
 const FINE_SHARE: f64 = 0.7;
 
-/// Up to so many vertices the descriptor is evaluated everywhere; of more, this many at least tell its ranks.
+/// Up to this many vertices the descriptor is evaluated everywhere; of more, at least this many give its
+/// ranks.
 const LARGE: usize = 8192;
 const SAMPLE: usize = 4096;
 /// Ranks and the bound of saliency are known that well from a sample.

@@ -1,4 +1,5 @@
-//! What every room may use: numbers in bytes, memory that is counted, lanes, threads. Knows neither meshes nor streams.
+//! What every room may use: numbers in bytes, counted memory, lanes, threads. Knows neither meshes nor
+//! streams.
 
 pub(crate) mod budget;
 pub(crate) mod bytes;

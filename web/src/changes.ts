@@ -8,7 +8,7 @@ export class Changes {
   firstVertex = Infinity;
   #rewritten: Range[] = [];
 
-  /** `sentTriangles`: how many the other side knows; what lies behind them goes as new anyway. */
+  /** `sentTriangles`: how many the other side knows; those after them are sent as new anyway. */
   add(update: Update, sentTriangles: number): void {
     if (update.vertices.end > update.vertices.start) {
       this.firstVertex = Math.min(this.firstVertex, update.vertices.start);

@@ -7,9 +7,9 @@ export type { MeshUpdate } from './messages.js';
 
 /** Where the worker and the module come from, and how the worker spends its time. */
 export interface WorkerOptions extends DecodeOptions {
-  /** Default: `worker.js` beside this file. */
+  /** Default: `worker.js` next to this file. */
   createWorker?: () => Worker;
-  /** Default: `lwc.wasm` beside this file, with the option `attributes` `lwc-assets.wasm`. */
+  /** Default: `lwc.wasm` next to this file, with the option `attributes` `lwc-assets.wasm`. */
   wasmURL?: string | URL;
   /**
    * The worker looks for new bytes and requests about this often, in milliseconds. Default 8.
@@ -39,9 +39,9 @@ function compile(url: string | URL): Promise<WebAssembly.Module> {
 
 type Taker = { resolve: (update: MeshUpdate | undefined) => void; reject: (error: unknown) => void };
 
-/** Decodes one stream in a worker of its own. */
+/** Decodes one stream in its own worker. */
 export class DecoderWorker {
-  /** What the stream says of itself, once it has come. */
+  /** Information about the stream, once it has arrived. */
   info: StreamInfo | undefined;
   onInfo: ((info: StreamInfo) => void) | undefined;
   readonly #worker: Worker;

@@ -56,7 +56,7 @@ export class Wasm {
 /** Where `lwc-assets.wasm` is: the module that knows attributes and scenes. */
 export const assetsURL = new URL('./lwc-assets.wasm', import.meta.url);
 
-/** What {@link loadWasm} takes; default: `lwc.wasm` beside this file. */
+/** What {@link loadWasm} takes; default: `lwc.wasm` next to this file. */
 export type WasmSource = string | URL | Response | BufferSource | WebAssembly.Module;
 
 /** Fetches and compiles the decoder. */
@@ -77,7 +77,7 @@ export async function loadWasm(source: WasmSource = new URL('./lwc.wasm', import
 
 export type PassKind = 'base' | 'split' | 'refine';
 
-/** One pass of a stream, and the mesh that stands after it. */
+/** One pass of a stream, and the mesh after it. */
 export interface PassInfo {
   kind: PassKind;
   level: number;
@@ -123,7 +123,7 @@ export interface Update {
   rewrittenTriangles: Range[];
 }
 
-/** Where a mesh of a scene stands. */
+/** An instance of a mesh of a scene. */
 export interface Instance {
   mesh: number;
   name: string;
@@ -139,7 +139,7 @@ export interface SceneInfo {
 
 /**
  * The mesh with its attributes as it is drawn: a vertex for each different set of values at a vertex. The vertices of
- * the mesh come first, in their order, behind them those that seams repeat.
+ * the mesh come first, in their order, after them those that seams repeat.
  */
 export interface Drawing {
   /** n × 3. */
@@ -197,7 +197,7 @@ export const WORK = 1000;
 const ELEMENTS = 8192;
 const KINDS: PassKind[] = ['base', 'split', 'refine'];
 
-/** How to decode, and what a stream that is not trusted may ask for. */
+/** How to decode, and the limits for an untrusted stream. */
 export interface DecodeOptions {
   /** Stop at this level. Default: the finest. */
   level?: number;
@@ -366,7 +366,7 @@ export class Decoder {
   }
 
   /**
-   * A guess of the RMS distance to the finest mesh, model units, from how much the surface bends and from
+   * An estimate of the RMS distance to the finest mesh, model units, from how much the surface bends and from
    * the quantization bits; with the option `shade`.
    */
   get expectedError(): number {
@@ -379,7 +379,7 @@ export class Decoder {
   }
 
   /**
-   * The mesh at hand with its attributes; what has not come yet of these is guessed. Collected anew by each call:
+   * The mesh at hand with its attributes; those that have not arrived yet are predicted. Each call collects it again:
    * time in proportion to the mesh. The views are valid until the next call of any method.
    */
   draw(): Drawing {

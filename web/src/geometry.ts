@@ -17,7 +17,7 @@ const UPLOAD_GAP = 4096;
 export class RefinedGeometry extends BufferGeometry {
   /** Longest time spent at a stretch so far, in milliseconds. */
   longestSlice = 0;
-  /** Of a scene, with the option `attributes`: where its meshes stand. */
+  /** Of a scene, with the option `attributes`: the instances of its meshes. */
   scene: SceneInfo | undefined;
   /** Of a scene the first triangle of each mesh, and the end of the last. */
   parts: Uint32Array = new Uint32Array();

@@ -27,7 +27,7 @@ export interface Refinement {
   isComplete: boolean;
   /** Bytes received so far. */
   bytes: number;
-  /** A guess of the RMS distance to the finest mesh, model units; NaN without normals. */
+  /** An estimate of the RMS distance to the finest mesh, model units; NaN without normals. */
   expectedError: number;
   decodeMilliseconds: number;
   /** Longest time that the worker was busy at a stretch so far, milliseconds. */
@@ -42,7 +42,7 @@ export interface ErrorTarget {
   camera: PerspectiveCamera | OrthographicCamera;
   /** Height of the drawing in pixels. */
   height: () => number;
-  /** Where the mesh stands in the world. Default: where its coordinates say. */
+  /** Where the mesh is in the world. Default: where its coordinates say. */
   matrixWorld?: Matrix4;
 }
 
@@ -72,7 +72,7 @@ export class LWCLoader extends Loader<RefinedGeometry> {
   normals = true;
   /**
    * Whether to give the geometry the attributes of the stream, with a module that is larger: `color`, `normal`, `uv`.
-   * Each update replaces all arrays then. Of a scene {@link RefinedGeometry.scene} says where its meshes stand, and
+   * Each update replaces all arrays then. Of a scene {@link RefinedGeometry.scene} gives the instances of its meshes, and
    * `SceneGroup` draws them there.
    */
   attributes = false;

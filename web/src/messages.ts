@@ -34,7 +34,7 @@ export interface MeshUpdate {
   indices: Uint32Array;
   /** Runs of older triangles to write anew: start, end, start, end, … */
   rewrittenRanges: Uint32Array;
-  /** Vertex indices of those runs, one behind the other. */
+  /** Vertex indices of those runs, one after the other. */
   rewrittenIndices: Uint32Array;
   /** With the option `attributes`; everything else is of this mesh then, and whole. */
   drawing: Drawing | undefined;

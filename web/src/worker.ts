@@ -57,7 +57,7 @@ async function open({ module, options, slice: wanted }: Extract<ToWorker, { type
   }
 }
 
-/** Decodes slice by slice; between two slices the messages that have come are read. */
+/** Decodes slice by slice; between two slices it reads the messages that have arrived. */
 async function run(): Promise<void> {
   if (!decoder && !error) return;
   isRunning = true;
@@ -123,7 +123,7 @@ function decodeSlice(decoder: Decoder): boolean {
       scope.postMessage({ type: 'info', info: decoder.info });
     }
     if (step.type === 'waiting') {
-      // Values come behind the pass that brings their vertices.
+      // Values come after the pass that adds their vertices.
       isDirty ||= hasAttributes && decoder.passesDone > 0 && decoder.attributeBytes !== sentAttributes;
       return false;
     }

@@ -156,7 +156,7 @@ typedef struct LwcEncodeOptions {
   bool keep_degenerate;
 } LwcEncodeOptions;
 
-// How to decode, and what a stream that is not trusted may ask for.
+// How to decode, and the limits for an untrusted stream.
 typedef struct LwcDecodeOptions {
   // Last level wanted, 0 is the base mesh; negative for all.
   int32_t level;
@@ -172,7 +172,7 @@ typedef struct LwcDecodeOptions {
   bool no_shrinkage_compensation;
 } LwcDecodeOptions;
 
-// A pass, and the mesh that stands after it.
+// A pass, and the mesh after it.
 typedef struct LwcPass {
   // 0 base mesh, 1 split: vertices of one level, 2 refine: one more bit of precision.
   uint32_t kind;
@@ -366,9 +366,9 @@ const uint32_t *lwc_decoder_triangles(const struct LwcDecoder *decoder);
 // `decoder` was handed out by this library and has not been freed.
 uint32_t lwc_decoder_checksum(const struct LwcDecoder *decoder);
 
-// A copy of the mesh at hand as it was encoded: vertices joined where the surface was cut, behind the last pass what
-// lies loose, exact positions and the order of the file, if the stream has them; with the attributes. It is to be
-// freed by lwc_mesh_free. LWC_STATUS_NO_MESH before the base mesh.
+// A copy of the mesh at hand as it was encoded: vertices stitched where the surface was cut; after the last pass also
+// isolated vertices, degenerate faces, exact positions and the order of the file, if the stream has them; with the
+// attributes. It is to be freed by lwc_mesh_free. LWC_STATUS_NO_MESH before the base mesh.
 //
 // # Safety
 // `decoder` was handed out by this library and has not been freed; `mesh` can be written to.
@@ -381,7 +381,7 @@ enum LwcStatus lwc_decoder_mesh(const struct LwcDecoder *decoder,
 // `decoder` was handed out by this library and has not been freed.
 uint32_t lwc_decoder_attribute_checksum(const struct LwcDecoder *decoder);
 
-// Passes that the stream announces; 0 before its table of passes has come.
+// Number of passes of the stream; 0 before its table of passes has arrived.
 //
 // # Safety
 // `decoder` was handed out by this library and has not been freed.

@@ -1,4 +1,4 @@
-//! Statuses, and the sentence behind the last one.
+//! Statuses, and the message of the last one.
 
 use lwc::{DecodeError, EncodeError, MeshError};
 use std::cell::RefCell;

@@ -49,7 +49,7 @@ pub struct Decoder {
     rewritten: Vec<[u32; 2]>,
 }
 
-/// A pass, and the mesh that stands after it.
+/// A pass, and the mesh after it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pass {
@@ -453,9 +453,9 @@ pub unsafe extern "C" fn lwc_decoder_checksum(decoder: *const Decoder) -> u32 {
     mesh.map_or(0, |mesh| mesh.checksum())
 }
 
-/// A copy of the mesh at hand as it was encoded: vertices joined where the surface was cut, behind the last pass what
-/// lies loose, exact positions and the order of the file, if the stream has them; with the attributes. It is to be
-/// freed by lwc_mesh_free. LWC_STATUS_NO_MESH before the base mesh.
+/// A copy of the mesh at hand as it was encoded: vertices stitched where the surface was cut; after the last pass also
+/// isolated vertices, degenerate faces, exact positions and the order of the file, if the stream has them; with the
+/// attributes. It is to be freed by lwc_mesh_free. LWC_STATUS_NO_MESH before the base mesh.
 ///
 /// # Safety
 /// `decoder` was handed out by this library and has not been freed; `mesh` can be written to.
@@ -481,7 +481,7 @@ pub unsafe extern "C" fn lwc_decoder_attribute_checksum(decoder: *const Decoder)
     unsafe { decoder.as_ref() }.map_or(0, |decoder| decoder.decoder.attribute_checksum())
 }
 
-/// Passes that the stream announces; 0 before its table of passes has come.
+/// Number of passes of the stream; 0 before its table of passes has arrived.
 ///
 /// # Safety
 /// `decoder` was handed out by this library and has not been freed.

@@ -5,7 +5,7 @@ use lwc::descriptors::{Descriptor, Window};
 use lwc::{Limits, Optimize, Partition, Profile};
 use std::ffi::{CStr, c_char};
 
-/// How to decode, and what a stream that is not trusted may ask for.
+/// How to decode, and the limits for an untrusted stream.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct DecodeOptions {

@@ -98,7 +98,7 @@ fn read_table(table: &Bound<'_, PyAny>) -> PyResult<(Values, usize)> {
         .unwrap_or_else(|| Err(PyTypeError::new_err("values of an attribute are numbers or names")))
 }
 
-/// A dict of `lwc.Attribute`. Of several with one name the later ones have their number behind it.
+/// A dict of `lwc.Attribute`. Of several with one name, the later ones have a number after the name.
 fn write<'py>(py: Python<'py>, attributes: Attributes) -> PyResult<Bound<'py, PyDict>> {
     let (class, dict) = (class(py, "Attribute")?, PyDict::new(py));
     for attribute in attributes.list {

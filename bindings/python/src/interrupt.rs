@@ -27,8 +27,8 @@ impl GoOn {
     }
 }
 
-/// Does `work` in a thread of its own while this one runs Python's signal handlers. If one raises, as that of Ctrl-C
-/// does, the work is given up: its thread ends when it next calls [`GoOn::check`].
+/// Does `work` in a separate thread while this one runs Python's signal handlers. If one raises, as that of
+/// Ctrl-C does, the work is given up: its thread ends when it next calls [`GoOn::check`].
 ///
 /// # Errors
 /// What the handler raises.

@@ -226,7 +226,7 @@ impl From<lwc::Update> for Update {
 }
 
 /// Decodes a stream as it arrives.
-// In a box of its own: Python's memory is aligned to 16 bytes, and a decoder wants 128.
+// In a separate box: Python's memory is aligned to 16 bytes, and a decoder wants 128.
 #[pyclass]
 struct Decoder(Box<lwc::Decoder>);
 
@@ -265,7 +265,7 @@ impl Decoder {
         found.map(|found| attributes::mesh(py, found)).transpose()
     }
 
-    /// What the stream says of itself; None before its table of passes has come.
+    /// Information about the stream; None before its table of passes has arrived.
     fn info<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         self.0.info().map(|info| info_dict(py, info)).transpose()
     }

@@ -7,7 +7,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// What `encode` is told beside the mesh. What is missing or None has its default.
+/// The options of `encode`. What is missing or None has its default.
 pub fn encode(py: Python<'_>, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<EncodeOptions> {
     let mut options = EncodeOptions::default();
     for (key, value) in keywords.into_iter().flatten().filter(|(_, value)| !value.is_none()) {

@@ -24,7 +24,7 @@ struct Gathered<'a> {
     columns: Vec<Column>,
     /// First vertex of the primitives with these attributes: primitives share vertices.
     blocks: HashMap<&'a BTreeMap<String, usize>, u32>,
-    /// Of each triangle, or [`NO_ENTRY`].
+    /// One per triangle, or [`NO_ENTRY`].
     materials: Vec<u32>,
     report: ReadReport,
 }
@@ -254,7 +254,7 @@ fn joined(
         let bits = |k| if row == NO_ENTRY { None } else { values.bits(row as usize * n + k) };
         (0..n).map(bits).collect::<Vec<_>>()
     };
-    // Of each vertex of the file, the first one at its place that has the same value.
+    // For each vertex of the file, the first one at its position that has the same value.
     let mut first_like: Vec<u32> = (0..vertex_of.len() as u32).collect();
     let mut has_seam = false;
     for place in split.chunk_by(|&a, &b| vertex_of[a as usize] == vertex_of[b as usize]) {
@@ -290,7 +290,7 @@ fn joined(
 
 /// The materials that triangles have, by name.
 fn materials(all_names: &[String], mut rows: Vec<u32>) -> Option<Attribute> {
-    // Of all materials those that are used, in order of appearance.
+    // The materials that are used, in order of appearance.
     let mut row_of = vec![NO_ENTRY; all_names.len()];
     let mut names = Vec::new();
     for row in rows.iter_mut().filter(|row| **row != NO_ENTRY) {

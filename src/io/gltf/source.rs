@@ -1,4 +1,4 @@
-//! The bytes of a file: the container, and the buffers inside and beside it.
+//! The bytes of a file: the container, and the buffers inside and next to it.
 
 use super::json::Document;
 use crate::io::{MAX_FILE_BYTES, Place, ReadError, text::quoted};
@@ -105,7 +105,7 @@ pub(super) fn load_buffers<'a>(
         let place = Place::Part("buffer", index);
         let mut bytes: Cow<[u8]> = match (&buffer.uri, binary) {
             (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
-            // Data of an extension; whoever needs it is told that it is not there.
+            // Data of an extension; code that needs it gets an error.
             (None, _) => Cow::Borrowed(&[]),
             (Some(uri), _) if uri.starts_with("data:") => Cow::Owned(decode_data(uri, place)?),
             (Some(uri), _) => Cow::Owned(read_file(uri, folder, buffer.byte_length.min(num_left), place)?),

@@ -180,7 +180,7 @@ fn representable(attribute: &Attribute) -> Option<Values> {
 }
 
 /// Directions of length 1, as glTF wants them, those that are nearly so as they are; what has no direction has the one
-/// that is given. Behind those of tangents stands a sign.
+/// that is given. Those of tangents are followed by a sign.
 fn unit_directions(attribute: &Attribute, other: [f32; 3]) -> Values {
     /// Lengths that rounding explains.
     const NEARLY: f64 = 1e-5;
@@ -271,7 +271,7 @@ struct Writer {
     materials: Vec<Value>,
     /// What else there is about materials.
     lists: Map<String, Value>,
-    /// Materials are told apart by their names.
+    /// Materials are identified by their names.
     material_of: HashMap<String, usize>,
     report: WriteReport,
 }

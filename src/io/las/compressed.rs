@@ -1,6 +1,6 @@
 //! The points of LAZ files, unpacked by the crate `laz`, which the crate `las` uses too.
 //!
-//! What `laz` would believe is checked before it gets to see it.
+//! What `laz` would rely on is checked before `laz` sees it.
 
 use super::{
     gps_time::GpsTimeSkipper,
@@ -103,7 +103,7 @@ fn chunk_table_place(header: &Header, bytes: &[u8]) -> Result<usize, ReadError> 
     let place = |at: usize| Fields(bytes).bytes(at).map(i64::from_le_bytes);
     let mut table = place(start)?;
     if table <= start as i64 {
-        // Who could not go back to write it here, wrote it at the end of the file.
+        // Writers that could not go back to write it here wrote it at the end of the file.
         table = place(bytes.len().saturating_sub(8))?;
     }
     let table = usize::try_from(table).unwrap_or(usize::MAX);

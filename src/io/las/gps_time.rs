@@ -1,6 +1,6 @@
 //! GPS times in LAZ files, passed over.
 //!
-//! Fields of a point are coded one after the other, so a time has to be decoded to reach what comes behind it.
+//! Fields of a point are coded one after the other, so a time has to be decoded to reach what comes after it.
 //! The decoder of `laz` calls itself for each change from one of four sequences of times to another. Nothing
 //! bounds these changes, and a file can make it use up the stack. A compressor changes once for a time at most.
 
@@ -15,7 +15,7 @@ use std::io::{self, ErrorKind, Read};
 /// Changes of the sequence within one time. The compressor makes one, others may be less direct.
 const MAX_CHANGES: usize = 3;
 
-/// Multiples of the last difference have symbols of their own up to here, and down to [`MIN_MULTIPLE`].
+/// Multiples of the last difference have separate symbols up to here, and down to [`MIN_MULTIPLE`].
 const MAX_MULTIPLE: i32 = 500;
 const MIN_MULTIPLE: i32 = -10;
 /// The time is the last one.
@@ -28,7 +28,7 @@ const NUM_SYMBOLS: u32 = FULL as u32 + 4;
 const FULL_AFTER_ZERO: i32 = 2;
 const NUM_SYMBOLS_AFTER_ZERO: u32 = 6;
 
-/// After so many differences that are no multiple of the last one, the last one is replaced.
+/// After this many differences that are not a multiple of the last one, the last one is replaced.
 const MAX_EXTREMES: u32 = 3;
 
 /// Decodes times of version 2 and forgets them.
@@ -152,7 +152,7 @@ impl GpsTimeSkipper {
         Ok(())
     }
 
-    /// A time that begins a sequence of its own: its upper half is coded, its lower half stored.
+    /// A time that begins a new sequence: its upper half is coded, its lower half stored.
     fn skip_full<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> io::Result<()> {
         // The bits do not depend on what is expected.
         self.differences.decompress(decoder, 0, 8)?;

@@ -1,7 +1,7 @@
 //! LAS and LAZ point clouds of terrain, triangulated in the plane.
 //!
 //! The vertices are points of the file at their coordinates, the triangles those of Delaunay seen from above,
-//! counter-clockwise from there. Overhangs are not for a surface like this: of several points above each
+//! counter-clockwise from there. Overhangs are not for a surface like this: among several points above each
 //! other one remains.
 
 mod compressed;
@@ -25,7 +25,7 @@ pub struct TerrainOptions {
     /// At most one point in each square of this size in units of the file, the one nearest to its middle.
     /// Positive. Default: no thinning.
     pub cell_size: Option<f64>,
-    /// At most so many points, by squares as large as that takes. Default: all.
+    /// At most this many points, by squares as large as that takes. Default: all.
     pub max_points: Option<usize>,
 }
 

@@ -6,12 +6,12 @@ use std::collections::{HashMap, HashSet, hash_map::Entry};
 /// Steps of the search for the size of a cell: enough for a factor of a million in the number of cells.
 const SEARCH_STEPS: usize = 24;
 
-/// Of the points at one place in the plane keeps the lowest; the first of several alike.
+/// Keeps the lowest of the points at one place in the plane; the first among equals.
 pub(super) fn keep_lowest(points: &mut Vec<Point>) {
     keep_best(points, |point| ([point.grid[0], point.grid[1]], f64::from(point.grid[2])));
 }
 
-/// Of the points in one cell keeps the one nearest to its middle. `cell`: steps of the grid, positive.
+/// Keeps the one of the points in a cell that is nearest to its middle. `cell`: steps of the grid, positive.
 pub(super) fn keep_one_per_cell(points: &mut Vec<Point>, cell: [f64; 2]) {
     keep_best(points, |point| {
         let place = [0, 1].map(|axis| f64::from(point.grid[axis]) / cell[axis]);
@@ -49,7 +49,7 @@ pub(super) fn keep_at_most(points: &mut Vec<Point>, most: usize, scale: [f64; 3]
     points.truncate(most);
 }
 
-/// Keeps of all points with the same key the one with the least value, the first of several.
+/// Keeps, of all points with the same key, the one with the least value, the first among equals.
 fn keep_best<K: std::hash::Hash + Eq>(points: &mut Vec<Point>, rank: impl Fn(&Point) -> (K, f64)) {
     let mut best: HashMap<K, (f64, usize)> = HashMap::with_capacity(points.len());
     for (k, point) in points.iter().enumerate() {

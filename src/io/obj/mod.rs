@@ -3,7 +3,7 @@
 //! The reader is our own. `tobj` forgets the order of the vertices, drops unused ones, splits those with several
 //! texture coordinates, has no line numbers in its errors and does not know continuation lines. This one goes
 //! through the file once, statement by statement, so that a compressed file is never in memory as a whole.
-//! What vertices, faces and corners have besides positions is gathered beside them ([`Gathered`]).
+//! What vertices, faces and corners have in addition to positions is gathered separately ([`Gathered`]).
 
 mod corner_tables;
 mod references;

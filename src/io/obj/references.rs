@@ -12,7 +12,7 @@ pub(super) struct References {
 impl References {
     /// The value from 0 that `word` means where `num_so_far` have come: an index from 1, or one that counts back.
     ///
-    /// `None` if it is no whole number, `Some(None)` if there is no such value. A place beyond 32 bits is
+    /// `None` if it is not a whole number, `Some(None)` if there is no such value. A place beyond 32 bits is
     /// [`NO_ENTRY`], which [`References::first_beyond`] finds.
     pub fn resolve(&mut self, word: &[u8], num_so_far: usize, line: usize) -> Option<Option<u32>> {
         let index: i64 = match word {

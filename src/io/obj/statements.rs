@@ -17,7 +17,7 @@ impl Statement<'_> {
         self.words().next().unwrap_or_default()
     }
 
-    /// What follows the keyword, without white space around it. Text that is not UTF-8 is taken for Latin-1.
+    /// What follows the keyword, without white space around it. Text that is not UTF-8 is read as Latin-1.
     pub fn name(&self) -> String {
         let name = self.text.trim_ascii()[self.keyword().len()..].trim_ascii();
         let latin1 = || name.iter().map(|&byte| char::from(byte)).collect();
@@ -54,7 +54,7 @@ impl<'s, 'a> Statements<'s, 'a> {
     }
 }
 
-/// Adds a line to a statement, and tells whether another one follows.
+/// Adds a line to a statement, and returns whether another one follows.
 fn append(text: &mut Vec<u8>, line: &[u8]) -> bool {
     // A backslash in a comment is the end of a path more often than a continuation.
     let without_comment = line.split(|&b| b == b'#').next().unwrap_or_default();

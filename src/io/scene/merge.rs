@@ -13,8 +13,8 @@ const MAX_ELEMENTS_PER_BYTE: usize = 16;
 const MIN_MAX_ELEMENTS: usize = 1 << 20;
 
 impl Scene {
-    /// One mesh of all instances in their places. Each triangle of several instances says which it is of, as
-    /// attribute `node`. Normals turn with their surface; a mirrored instance keeps its outside.
+    /// One mesh of all instances in their places. If there are several, each triangle says which it belongs
+    /// to, as attribute `node`. Normals turn with their surface; a mirrored instance keeps its outside.
     ///
     /// A single mesh that is where its coordinates say stays as it is, bit for bit.
     ///
@@ -242,8 +242,8 @@ fn determinant([[a, b, c, _], [d, e, f, _], [g, h, i, _]]: &[[f64; 4]; 3]) -> f6
     a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 }
 
-/// Normals as float32, turned by the transpose of the inverse: its rows, but for their length, are the cross
-/// products of those of the matrix.
+/// Normals as float32, turned by the transpose of the inverse: its rows, except for their length, are the
+/// cross products of those of the matrix.
 fn turned_normals(attribute: &Attribute, transform: &[[f64; 4]; 3]) -> Attribute {
     let cross = |u: &[f64; 4], v: &[f64; 4]| {
         [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]

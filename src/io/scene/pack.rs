@@ -45,8 +45,8 @@ impl Scene {
         libm::log2(scale).round().clamp(-100.0, 100.0) as i8
     }
 
-    /// The scene that a mesh packed by [`Scene::pack`] is, at any level; `None` if it is no such mesh. Meshes that
-    /// have no triangles have no vertices either.
+    /// The scene that a mesh packed by [`Scene::pack`] is, at any level; `None` if it is not such a mesh.
+    /// Meshes that have no triangles have no vertices either.
     ///
     /// # Errors
     /// If the meshes repeat names out of proportion to how often the stream has them.

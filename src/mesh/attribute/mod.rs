@@ -97,7 +97,7 @@ impl fmt::Display for Domain {
 
 /// A table of values, and which element has which entry of it.
 ///
-/// Nothing holds these fields together but [`Self::validate`]: who makes an attribute, or changes the mesh
+/// Only [`Self::validate`] keeps these fields consistent: whoever makes an attribute, or changes the mesh
 /// under it, calls that before somebody else uses both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribute {
@@ -286,7 +286,7 @@ pub struct Attributes {
     pub scene: Option<SceneTable>,
 }
 
-/// The materials of a glTF file, told apart by their names, with all that they refer to. Carried, not looked
+/// The materials of a glTF file, identified by their names, with all that they refer to. Carried, not looked
 /// into.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]

@@ -6,7 +6,7 @@ use crate::mesh::{NO_ENTRY, Surface};
 use crate::passes::GridMesh;
 use crate::util::simd4::Lanes;
 
-/// A row and the way to where it stands, from the place of the row that is coded.
+/// A row and its displacement from the position of the row that is coded.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known {
     pub(super) row: u32,

@@ -1,4 +1,4 @@
-//! What a stream says of its attributes before it has any values (`format/SPEC.md`, section 4.5).
+//! What a stream says about its attributes before it has any values (`format/SPEC.md`, section 4.5).
 
 use super::octahedron::Octahedron;
 use crate::mesh::{ComponentType, Domain, MAX_COMPONENTS, Semantic, Values};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// Most attributes of a stream.
 pub(crate) const MAX_ATTRIBUTES: usize = 64;
-/// Values that one byte of payload may bring: encoders pad, so that a small stream cannot ask for much memory.
+/// Values that one byte of payload may add: encoders pad, so that a small stream cannot ask for much memory.
 pub(crate) const MAX_VALUES_PER_BYTE: u64 = 1024;
 /// Most bits of a channel.
 pub(crate) const MAX_BITS: u32 = 30;
@@ -48,7 +48,7 @@ pub(crate) struct Declaration {
 pub(crate) struct Declarations {
     pub(crate) list: Vec<Declaration>,
     pub(crate) material_libraries: Arc<[String]>,
-    /// Per pass; 0 behind refinements, which bring no elements.
+    /// Per pass; 0 after refinements, which add no elements.
     pub(crate) bytes: Vec<u32>,
 }
 

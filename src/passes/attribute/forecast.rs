@@ -26,13 +26,13 @@ pub(super) enum Flavour {
     Normal(Octahedron),
 }
 
-/// Features: towards the mean by inverse distances, the affine fit, and what the flavour has besides; the errors of
-/// the two channels before.
+/// Features: towards the mean by inverse distances, the affine fit, and what is special to the flavour; the
+/// errors of the two channels before.
 const NUM_FEATURES: usize = 5;
 const FIRST_WEIGHTS: [f32; NUM_FEATURES] = [0.3, 0.4, 0.1, 0.0, 0.0];
-/// Classes of neighbourhoods with filters of their own.
+/// Classes of neighbourhoods with separate filters.
 const NUM_CLASSES: usize = 8;
-/// Channels with models of their own, the last ones sharing.
+/// Channels with separate models; the last ones share.
 const NUM_PLACES: usize = 4;
 const FIRST_SCALES: [f32; NUM_CUES] = [-0.4, 0.35, 0.3, 0.1, 0.1, 0.0, 0.05];
 const FIRST_TRUST: Lanes = Lanes([0.25; 4]);
@@ -66,7 +66,7 @@ impl View {
     }
 }
 
-/// What is known of one channel before it is coded.
+/// What is known about one channel before it is coded.
 #[derive(Clone, Copy, Default)]
 struct Outlook {
     mean: f32,
@@ -138,7 +138,7 @@ impl NumberModels {
             let guess = self.guess(place, class, &outlook, by_ring, errors);
             let expected = guess.expectation(origin, place, class, &outlook, by_ring);
             let value = self.residuals.code(coder, &expected, wanted);
-            // What a cut payload does not tell is as expected.
+            // What a cut payload does not contain is as predicted.
             let value = if coder.is_guessing() { Some(guess.likeliest(origin, self.range)) } else { value };
             let value = value.filter(|value| (self.range[0]..=self.range[1]).contains(value))?;
             let truth = value.wrapping_sub(origin) as f32;
@@ -347,8 +347,8 @@ impl NumberModels {
     }
 }
 
-/// The guess at one channel. Lanes are experts: the filter, the affine fit, the median (of maps and directions what is
-/// special to them), the mean by inverse distances.
+/// The prediction of one channel. Lanes are experts: the filter, the affine fit, the median (of maps and
+/// directions what is special to them), the mean by inverse distances.
 struct Guess {
     mixture: Mixture,
     cues: [Lanes; NUM_CUES],

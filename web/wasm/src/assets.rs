@@ -116,7 +116,7 @@ pub extern "C" fn drawn_parts(handle: u32) -> *const u32 {
     with(handle, |slot| slot.assets().drawing.parts.as_ptr())
 }
 
-/// Where the meshes of a scene stand, as JSON.
+/// The instances of the meshes of a scene, as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn scene(handle: u32) -> *const u8 {
     with(handle, |slot| slot.assets().scene.as_ptr())

@@ -7,7 +7,7 @@ use lwc::mesh::{Attribute, Attributes, Domain, Semantic};
 const NONE: u32 = u32::MAX;
 
 /// A mesh whose vertices have colours, texture coordinates and normals. The vertices of the mesh come first, in their
-/// order; behind them those that a seam repeats.
+/// order; after them those that a seam repeats.
 #[derive(Default)]
 pub struct Drawing {
     /// The vertex of the mesh that each vertex is.

@@ -1,4 +1,4 @@
-//! The decoder behind a handful of functions that take and return numbers.
+//! The decoder as a handful of functions that take and return numbers.
 //!
 //! `web/src/decoder.ts` is the only caller. Decoders are named by numbers, not by pointers, so a wrong
 //! handle is a trap and never a stray access. A trap, after which nothing of its call runs,
@@ -126,7 +126,7 @@ pub extern "C" fn info(handle: u32) -> *const f64 {
     with(handle, |slot| slot.info().as_ptr())
 }
 
-/// Number of doubles at [`info`], 0 before the table of passes has come.
+/// Number of doubles at [`info`], 0 before the table of passes has arrived.
 #[unsafe(no_mangle)]
 pub extern "C" fn info_length(handle: u32) -> u32 {
     with(handle, |slot| slot.info().len() as u32)

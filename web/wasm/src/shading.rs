@@ -1,4 +1,4 @@
-//! Normals for drawing, and a guess of how far the surface still is from the finest one.
+//! Normals for drawing, and an estimate of how far the surface still is from the finest one.
 
 /// Vertex normals of a mesh and its expected error, computed part by part.
 #[derive(Default)]

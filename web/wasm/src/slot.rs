@@ -190,7 +190,7 @@ impl Slot {
         &self.assets
     }
 
-    /// Bytes of attributes decoded so far: they come behind the pass that they belong to.
+    /// Bytes of attributes decoded so far: they come after the pass that they belong to.
     #[cfg(feature = "assets")]
     pub fn attribute_bytes(&self) -> u64 {
         self.decoder.attribute_bytes().iter().sum()
