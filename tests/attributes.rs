@@ -320,7 +320,7 @@ fn attributes_that_do_not_fit_are_refused() {
     attributes.list = vec![Attribute::new("q", Semantic::Generic, Domain::Vertex, 1, Values::U8(vec![1]))];
     for format in [Format::Obj, Format::Ply, Format::Stl] {
         let refused = io::write_with_attributes_to(Vec::new(), &triangle(), &attributes, format);
-        assert_eq!(refused.unwrap_err().to_string(), "attribute q: 1 rows or indices for 3 vertices");
+        assert_eq!(refused.unwrap_err().to_string(), "attribute q: 1 entries or indices for 3 vertices");
     }
 }
 

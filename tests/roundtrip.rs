@@ -108,8 +108,8 @@ fn nothing_to_encode_is_an_error() {
 fn an_option_out_of_range_is_an_error() {
     type Change = fn(&mut EncodeOptions);
     let changes: [(&str, Change); 8] = [
-        ("quantization", |o| o.quantization_bits = 0),
-        ("quantization", |o| o.quantization_bits = 31),
+        ("quantization bits", |o| o.quantization_bits = 0),
+        ("quantization bits", |o| o.quantization_bits = 31),
         ("levels", |o| o.levels = Some(129)),
         ("rings", |o| o.window.rings = 0),
         ("radius", |o| o.window.radius = f64::NAN),
