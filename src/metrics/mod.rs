@@ -10,6 +10,7 @@
 //! The same meshes give the same bits, whatever the number of threads: samples are taken in blocks of fixed
 //! size whose sums are added in order.
 
+mod bounds;
 mod crowd;
 mod known;
 mod nearest;
