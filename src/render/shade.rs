@@ -1,7 +1,8 @@
 //! From visible triangles to colours.
 
 use super::camera::Camera;
-use super::raster::{NOTHING, Projected, Visible};
+use super::projected::Projected;
+use super::raster::{NOTHING, Visible};
 use super::{Image, Paint, RenderError, Shading, Style};
 use crate::TriMesh;
 use glam::DVec3;
