@@ -1,7 +1,7 @@
 //! Triangles of the base mesh M⁰ (`format/SPEC.md`, section 7.1), grown over their edges: around one vertex of the boundary
 //! until it is enclosed, then around the next one. Where the vertices lie follows in [`base_positions`](super::base_positions).
 
-use super::base_positions::Placement;
+use super::base_positions::{Base, Placement};
 use super::work_budget::WorkBudget;
 use super::{GridMesh, Malformed};
 use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
@@ -25,16 +25,6 @@ const LIMIT: u32 = 250;
 pub(crate) struct BaseTarget<'a> {
     pub(crate) surface: &'a Surface,
     pub(crate) positions: &'a [[i32; 3]],
-}
-
-/// The coded mesh, and where its parts come from in the target (empty when decoding).
-#[cfg_attr(not(feature = "encoder"), allow(dead_code))]
-pub(crate) struct Base {
-    pub(crate) mesh: GridMesh,
-    /// Target vertex of each vertex.
-    pub(crate) vertex_source: Vec<u32>,
-    /// Target corner of the first corner of each triangle.
-    pub(crate) corner_source: Vec<u32>,
 }
 
 /// Codes a base mesh of `num_vertices` and `num_faces` with `precision` bits per coordinate.
