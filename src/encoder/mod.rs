@@ -9,6 +9,7 @@ mod earnings;
 mod number_format;
 mod options;
 mod patch_search;
+mod payload;
 pub(crate) mod quantise;
 mod schedule;
 mod tie_break;
@@ -16,6 +17,7 @@ mod ties;
 mod trailing;
 mod values;
 mod write;
+mod written_pass;
 
 use attributes::Elements;
 use tie_break::Signatures;
@@ -29,7 +31,6 @@ use crate::descriptors::{Features, FeaturesError};
 use crate::error::EncodeError;
 use crate::mesh::repair::{RepairReport, cut};
 use crate::mesh::{Attributes, TriMesh, has_three_vertices};
-use crate::passes::Malformed;
 use std::cell::OnceCell;
 
 /// Encodes a mesh.
@@ -173,16 +174,4 @@ fn features(
     }
     let features = Features::choose(mesh, attributes, &options.descriptor_attributes)?;
     Ok(Some(features.of_vertices(vertices)))
-}
-
-/// A payload with as many zeros behind it as a decoder wants to believe that it holds so many things.
-fn padded(mut payload: Vec<u8>, count: u64, most_per_byte: u64) -> Vec<u8> {
-    let least = count.div_ceil(most_per_byte).saturating_sub(1);
-    payload.resize(payload.len().max(least as usize), 0);
-    payload
-}
-
-/// The codes fail on malformed payloads only, and an encoder reads none.
-fn expect_sound<T>(result: Result<T, Malformed>) -> T {
-    result.unwrap_or_else(|e| unreachable!("the encoder made a stream it refuses: {}", e.0))
 }
