@@ -1,7 +1,7 @@
 //! The connectivity of all levels, vertices numbered coarse before fine.
 
-use super::Options;
-use super::detail_transfer::EditError;
+use super::edit_error::EditError;
+use super::options::Options;
 use crate::decoder::{Decoder, PassKind};
 use crate::descriptors;
 use crate::encoder::quantise::{LEGALITY_BITS, quantise};
