@@ -1,5 +1,6 @@
 //! What stands before the passes: header chunks in, [`StreamInfo`] out (`format/SPEC.md`, section 4).
 
+use super::built_with::ASSETS;
 use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, StreamInfo, TrailingInfo};
 use super::refused::{malformed, out_of_order, skip};
 use super::{attributes, forecast};
@@ -13,10 +14,6 @@ use crate::limits::Limits;
 use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
 use crate::util::budget::Budget;
-
-/// Whether the decoder knows what stands beside the surface. Without that all of it is skipped as chunks that nobody
-/// knows, and the compiler leaves out what would read it.
-pub(super) const ASSETS: bool = cfg!(feature = "assets");
 
 /// The header chunks that have come.
 #[derive(Default)]
