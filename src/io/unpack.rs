@@ -1,11 +1,18 @@
 //! Files as they are read: unpacked if they are compressed, and never more than was allowed.
 
-use super::{Format, MAX_FILE_BYTES, ReadError, format_and_compression, source::Source};
+use super::error::ReadError;
+use super::format::{Format, format_and_compression};
+use super::source::Source;
 use std::{
     fs::File,
     io::{self, BufReader, Read},
     path::Path,
 };
+
+/// The largest file that is read, in bytes after decompression: 16 GiB.
+///
+/// A mesh of a hundred million vertices is smaller in every format but the wordiest OBJ.
+pub const MAX_FILE_BYTES: u64 = 16 << 30;
 
 /// How much a file may unpack to; how files are read in [`crate::io`].
 ///
