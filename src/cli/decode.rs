@@ -1,17 +1,52 @@
 //! `lwc decode`: a stream, or the beginning of one, becomes a mesh file.
 
-use super::args::Decode;
+use super::args::LimitArgs;
 use super::exit::Failure;
 use super::input::{DecodedStream, StreamSource, note_if_incomplete, reached};
 use super::output::{Destination, with_ending};
-use super::quantity::counted;
+use super::quantity::{self, counted};
 use super::ui::Ui;
 use anyhow::Context;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lwc::io::{Format, Scene, WriteError, WriteReport};
 use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+/// Decode a stream, or as much of it as there is.
+///
+/// A stream that ends early gives a coarser mesh, with a note on standard error.
+#[derive(Debug, clap::Args)]
+pub struct Decode {
+    /// Stream to decode; standard input if it is `-` or missing.
+    #[arg(value_name = "FILE.lwc")]
+    pub input: Option<PathBuf>,
+    /// Mesh to write, `-` for standard output. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as
+    /// .obj.zst. Default, in the folder of model.lwc: model.level5.obj with `--level 5`, model.decoded.obj without.
+    ///
+    /// A file that exists is replaced once the new one is complete; the input is never replaced.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Stop at this level; 0 is the base mesh. Default: the finest.
+    #[arg(short, long, value_name = "K", allow_negative_numbers = true)]
+    pub level: Option<u32>,
+    /// Leave the vertices of coarse levels where they are in the finest mesh. By default they are moved a little outwards,
+    /// since coarse meshes shrink.
+    #[arg(long)]
+    pub uncompensated: bool,
+    /// Decode the first N bytes only, e.g. 5000 or 20K. Default: all.
+    #[arg(short, long, value_name = "N", value_parser = quantity::bytes, allow_negative_numbers = true)]
+    pub bytes: Option<u64>,
+    /// Format for standard output and for the default file name. Default: obj.
+    #[arg(long, value_name = "FORMAT", value_parser = format_parser())]
+    pub format: Option<Format>,
+    /// Write the finest intact mesh of a damaged stream, and succeed with a warning.
+    #[arg(long)]
+    pub salvage: bool,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
 
 /// Reads and decodes at once, writes, reports.
 pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
@@ -123,6 +158,12 @@ fn write(
         Ok::<(), WriteError>(())
     })?;
     Ok(report)
+}
+
+fn format_parser() -> impl TypedValueParser<Value = Format> {
+    let written = || Format::ALL.iter().copied().filter(|format| format.is_written());
+    PossibleValuesParser::new(written().map(Format::extension))
+        .try_map(move |name| written().find(|f| f.extension() == name).ok_or("unknown format"))
 }
 
 #[cfg(test)]

@@ -1,17 +1,42 @@
 //! `lwc describe`: a descriptor at every vertex, as numbers or colours.
 
-use super::args::Describe;
+use super::args::{Reading, Scale};
 use super::exit::Failure;
 use super::input::read_mesh;
-use super::output::Destination;
-use super::render::{has_ending, heat_picture};
+use super::output::{Destination, has_ending};
+use super::render::args::{HeatArgs, Picture};
+use super::render::heat_picture;
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::descriptors::{Features, evaluate_with_features, evaluate_with_progress, mean_edge_length};
 use lwc::io::MeshFile;
 use lwc::render::{Heat, sequential};
 use std::io::{self, Write};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Evaluate a descriptor at every vertex of a mesh.
+///
+/// As CSV: the header `vertex,value` and one line per vertex, in the order of the file, with all digits.
+/// As PNG: a picture coloured by the values, with a legend. As PLY: the mesh with the same colours at its
+/// vertices. Vertices without faces have the value 0.
+#[derive(Debug, clap::Args)]
+pub struct Describe {
+    /// Mesh to describe.
+    #[arg(value_name = "MESH")]
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub scale: Scale,
+    /// Table (.csv), picture (.png) or coloured mesh (.ply) to write, `-` for a table on standard output.
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub heat: HeatArgs,
+    #[command(flatten)]
+    pub reading: Reading,
+    #[command(flatten)]
+    pub picture: Picture,
+}
 
 /// Reads, evaluates, writes.
 pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {

@@ -1,6 +1,6 @@
 //! `lwc info`: what a stream says of itself.
 
-use super::args::Info;
+use super::args::LimitArgs;
 use super::exit::Failure;
 use super::input::StreamSource;
 use super::output::print_json;
@@ -12,11 +12,30 @@ use lwc::descriptors::Descriptor;
 use lwc::{Partition, StreamInfo};
 use serde_json::{Value, json};
 use std::io::{self, BufWriter, Read, Write};
+use std::path::PathBuf;
+
+/// Show levels, passes and parameters of a stream without decoding it.
+///
+/// The beginning of a stream is enough, if its table of passes is complete.
+#[derive(Debug, clap::Args)]
+pub struct Info {
+    /// Stream to look at; standard input if it is `-` or missing.
+    #[arg(value_name = "FILE.lwc")]
+    pub input: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub json: bool,
+    /// Draw a chart (.svg or .png): the distance from the finest mesh over the bytes read. This decodes the stream.
+    #[arg(long, value_name = "FILE", conflicts_with = "json")]
+    pub plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
 
 /// Reads up to the table of passes, counts the bytes behind it, reports.
 pub fn run(args: &Info, ui: &Ui) -> anyhow::Result<()> {
     if let Some(plot) = &args.plot {
-        return rate_distortion::run(args, plot, ui);
+        return rate_distortion::run(args.input.as_deref(), args.limits.limits(), plot, ui);
     }
     let source = StreamSource::new(args.input.as_deref())?;
     let mut reader = source.open()?;

@@ -73,6 +73,11 @@ impl Destination {
     }
 }
 
+/// Whether a file has this ending, in any case.
+pub fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
+}
+
 /// `model.obj.zst` → `model`, in the same folder: a further ending may be put behind it.
 pub fn without_mesh_ending(path: &Path) -> PathBuf {
     let is_compressed = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("zst"));

@@ -1,15 +1,13 @@
 //! `lwc info --plot`: how near each prefix of a stream comes to its finest mesh.
 
-use super::args::Info;
 use super::exit::Failure;
 use super::input::StreamSource;
-use super::output::Destination;
-use super::render::has_ending;
+use super::output::{Destination, has_ending};
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::metrics::{CompareOptions, compare};
 use lwc::render::{Chart, Series, log_ticks};
-use lwc::{DecodeError, DecodeOptions, Decoder};
+use lwc::{DecodeError, DecodeOptions, Decoder, Limits};
 use std::io::Read;
 use std::path::Path;
 
@@ -24,17 +22,17 @@ struct Point {
 }
 
 /// Decodes the stream twice, as meshes of all passes would fill memory, and draws.
-pub fn run(args: &Info, plot: &Path, ui: &Ui) -> anyhow::Result<()> {
+pub fn run(input: Option<&Path>, limits: Limits, plot: &Path, ui: &Ui) -> anyhow::Result<()> {
     let destination = Destination::new(plot.to_owned());
     if !has_ending(plot, "svg") && !has_ending(plot, "png") {
         let what = "unknown ending; plots are written as .svg or .png".to_owned();
         return Err(Failure::Usage(what)).with_context(|| destination.name());
     }
-    let source = StreamSource::new(args.input.as_deref())?;
+    let source = StreamSource::new(input)?;
     destination.check(source.path(), true)?;
     let mut bytes = Vec::new();
     source.open()?.read_to_end(&mut bytes).map_err(Failure::Input).with_context(|| source.name())?;
-    let points = measure(&bytes, args, ui).with_context(|| source.name())?;
+    let points = measure(&bytes, limits, ui).with_context(|| source.name())?;
     let name = source.path().and_then(Path::file_name).unwrap_or_default().to_string_lossy().into_owned();
     let chart =
         chart(name, &points).ok_or_else(|| Failure::Usage("a stream of one pass has no curve".into()))?;
@@ -47,8 +45,8 @@ pub fn run(args: &Info, plot: &Path, ui: &Ui) -> anyhow::Result<()> {
     }
 }
 
-fn measure(bytes: &[u8], args: &Info, ui: &Ui) -> anyhow::Result<Vec<Point>> {
-    let options = DecodeOptions::new().limits(args.limits.limits());
+fn measure(bytes: &[u8], limits: Limits, ui: &Ui) -> anyhow::Result<Vec<Point>> {
+    let options = DecodeOptions::new().limits(limits);
     let finest = lwc::decode(bytes, options)?;
     let bar = ui.bar("measuring");
     let mut decoder = Decoder::with_options(options);

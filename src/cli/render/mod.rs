@@ -5,7 +5,7 @@ mod montage;
 
 use super::exit::Failure;
 use super::input::{DecodedStream, StreamSource, in_place, note_if_incomplete, read_mesh};
-use super::output::Destination;
+use super::output::{Destination, has_ending};
 use super::ui::Ui;
 use anyhow::Context;
 use args::{AttributeKind, ColorBy, HeatArgs, Picture, Render};
@@ -14,7 +14,6 @@ use lwc::io::MeshFile;
 use lwc::mesh::Attributes;
 use lwc::render::{Camera, CornerPaint, Heat, Image, Paint, RenderError, render, with_legend};
 use lwc::{DecodeError, DecodeOptions, TriMesh};
-use std::path::Path;
 
 /// Reads, draws, writes.
 pub fn run(args: &Render, ui: &Ui) -> anyhow::Result<()> {
@@ -48,10 +47,6 @@ fn check_ending(destination: &Destination) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
-}
-
-pub fn has_ending(path: &Path, ending: &str) -> bool {
-    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
 /// The colours that an attribute gives.

@@ -1,8 +1,8 @@
 //! All levels of a stream side by side.
 
 use super::args::Render;
-use super::has_ending;
 use crate::cli::exit::Failure;
+use crate::cli::output::has_ending;
 use crate::cli::ui::Ui;
 use anyhow::Context;
 use lwc::metrics::{CompareOptions, compare};

@@ -1,9 +1,9 @@
 //! What the page shows: the stream, and what can be found out about it.
 
-use super::super::args::View;
-use super::super::exit::Failure;
-use super::super::input::read_mesh;
-use super::super::ui::Ui;
+use super::args::View;
+use crate::cli::exit::Failure;
+use crate::cli::input::read_mesh;
+use crate::cli::ui::Ui;
 use anyhow::Context;
 use lwc::descriptors::{Descriptor, evaluate, mean_edge_length};
 use lwc::mesh::Semantic;

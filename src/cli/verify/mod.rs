@@ -2,11 +2,15 @@
 //!
 //! Grid and comparison are written a second time here, so that encoder and decoder cannot agree on a mistake.
 
+mod attributes;
+mod exact;
+mod triangle;
+
 use super::exit::Failure;
-use super::{verify_attributes, verify_exact};
 use lwc::mesh::Attributes;
 use lwc::{Decoder, EncodeOptions, Encoded, Limits, TriMesh};
 use std::hash::{DefaultHasher, Hash, Hasher};
+use triangle::{is_usable, turned};
 
 /// Sizes of the pieces that the decoder gets, over and over: one byte, and lengths that divide nothing.
 const PIECES: [usize; 6] = [1, 3, 17, 997, 65_521, 7];
@@ -30,9 +34,9 @@ pub fn verify(
         let (decoded, found) = decoder.to_tri_mesh_with_attributes().ok_or("there is no mesh")?;
         compare_whole(&kept(mesh, options), &decoded, &expected, options)?;
         let cells: Vec<Cell> = mesh.positions().iter().map(|&p| expected.cell(p)).collect();
-        verify_attributes::compare(mesh, attributes, &cells, options, &decoder)?;
+        attributes::compare(mesh, attributes, &cells, options, &decoder)?;
         match options.lossless {
-            true => verify_exact::compare((mesh, attributes), (&decoded, &found), options),
+            true => exact::compare((mesh, attributes), (&decoded, &found), options),
             false => Ok(()),
         }
     };
@@ -166,10 +170,6 @@ fn stars(mesh: &TriMesh, places: &[[u64; 3]]) -> Vec<u64> {
     stars
 }
 
-pub fn is_usable(&[a, b, c]: &[u32; 3]) -> bool {
-    a != b && b != c && c != a
-}
-
 type Cell = [i32; 3];
 
 /// A mesh on the grid.
@@ -223,11 +223,6 @@ impl Quantised {
             if self.side == 0.0 { 0 } else { (scaled + 0.5).floor() as i32 }
         })
     }
-}
-
-/// The same triangle from its smallest corner on.
-pub fn turned<T: Copy + Ord>([a, b, c]: [T; 3]) -> [T; 3] {
-    [a, b, c].min([b, c, a]).min([c, a, b])
 }
 
 /// Triangles in an order that depends on nothing but the multiset of oriented triangles: each begins with

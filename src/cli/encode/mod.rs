@@ -1,0 +1,128 @@
+//! `lwc encode`: a mesh file becomes a stream.
+
+pub mod args;
+mod report;
+
+use super::exit::Failure;
+use super::input::{read_for_stream, read_terrain};
+use super::output::Destination;
+use super::quantity::counted;
+use super::ui::Ui;
+use super::verify;
+use anyhow::Context;
+use args::Encode;
+use lwc::io::{Format, MeshFile};
+use lwc::{EncodeOptions, Encoded, RepairReport};
+use report::Report;
+use std::time::Instant;
+
+/// Reads, encodes, verifies, writes, reports.
+pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
+    let destination = args.destination();
+    destination.check(Some(&args.input), false)?;
+    check_ending(&destination).with_context(|| destination.name())?;
+    let start = Instant::now();
+    let mut file = match args.terrain.options() {
+        Some(options) => read_terrain(&args.input, &options, &args.reading, ui)?,
+        None => read_for_stream(&args.input, args.merge, &args.reading, ui)?,
+    };
+    let left_out = if args.no_attributes { drop_attributes(&mut file) } else { Vec::new() };
+    let read_seconds = start.elapsed().as_secs_f64();
+
+    let name = args.input.display().to_string();
+    let start = Instant::now();
+    let (encoded, options) = encode(&file, args, ui).with_context(|| name.clone())?;
+    let encode_seconds = start.elapsed().as_secs_f64();
+    warn_about(&name, &encoded, ui);
+
+    if args.verify {
+        let start = Instant::now();
+        let _spinner = ui.spinner("verifying");
+        verify::verify(&file.mesh, &file.attributes, &options, &encoded).with_context(|| name.clone())?;
+        ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
+    }
+    destination.write(|out| out.write_all(&encoded.bytes))?;
+    let (file, encoded) = (&file, &encoded);
+    let report = Report { args, file, left_out, encoded, destination, read_seconds, encode_seconds };
+    report.print(ui)
+}
+
+/// A stream under the ending of a mesh would be taken for one, and often replaces it.
+fn check_ending(destination: &Destination) -> Result<(), Failure> {
+    match destination {
+        Destination::File(path) if Format::from_path(path).is_some() => {
+            Err(Failure::Usage("the ending is that of a mesh, but the output is a stream (.lwc)".into()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Grids that are tried if all floats are kept and nobody says how fine it should be: coordinates may lie on
+/// one that the file does not tell.
+const LOSSLESS_BITS: [u32; 3] = [12, 15, 18];
+
+/// The smallest stream, and its options.
+fn encode(file: &MeshFile, args: &Encode, ui: &Ui) -> Result<(Encoded, EncodeOptions), lwc::EncodeError> {
+    let bar = ui.bar("encoding");
+    let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
+    let encode = |options: EncodeOptions| {
+        let encoded = lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress)?;
+        Ok((encoded, options))
+    };
+    let options = args.options();
+    if !args.lossless || args.quantization.is_some() {
+        return encode(options);
+    }
+    let with = |bits: u32| {
+        let mut options = options.clone();
+        options.quantization = bits;
+        encode(options)
+    };
+    let mut best = with(LOSSLESS_BITS[0])?;
+    for bits in &LOSSLESS_BITS[1..] {
+        let other = with(*bits)?;
+        if other.0.bytes.len() < best.0.bytes.len() {
+            best = other;
+        }
+    }
+    Ok(best)
+}
+
+/// Takes the attributes out of a file; returns their names.
+fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
+    let attributes = std::mem::take(&mut file.attributes);
+    let names = attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
+    names.chain(attributes.material_libraries.first().map(|_| "mtllib".to_owned())).collect()
+}
+
+/// Fewer vertices need no beginnings.
+const SMALL: u32 = 1000;
+
+fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
+    if let [base, rest @ ..] = encoded.info.passes()
+        && rest.is_empty()
+        && base.vertices >= SMALL
+    {
+        ui.note(
+            name,
+            "in one piece: nothing shows before the last byte has come; `--levels 99` keeps levels",
+        );
+    }
+    let RepairReport { degenerate_faces, isolated_vertices, repeated_vertices } = encoded.repair;
+    if encoded.values_dropped > 0 {
+        let values = counted(encoded.values_dropped, "value", "values");
+        ui.warn(name, &format!("{values} of attributes left out: not finite"));
+    }
+    if degenerate_faces > 0 {
+        let faces = counted(degenerate_faces, "degenerate face", "degenerate faces");
+        ui.warn(name, &format!("{faces} dropped"));
+    }
+    if isolated_vertices > 0 {
+        let vertices = counted(isolated_vertices, "vertex", "vertices");
+        ui.warn(name, &format!("{vertices} without faces dropped"));
+    }
+    if repeated_vertices > 0 {
+        let vertices = counted(repeated_vertices, "vertex", "vertices");
+        ui.detail(name, &format!("{vertices} repeated to cut the mesh where it is not manifold"));
+    }
+}
