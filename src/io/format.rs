@@ -68,6 +68,11 @@ impl Format {
         }
     }
 
+    /// Whether it is read when all bytes are in memory.
+    pub(super) fn is_read_as_a_whole(self) -> bool {
+        !matches!(self, Self::Obj | Self::Ply | Self::Stl)
+    }
+
     /// The format that the ending of `path` names, in any case; a further `.zst` is looked past.
     /// `None` if the ending is none of ours.
     pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {

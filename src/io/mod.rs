@@ -18,6 +18,7 @@
 
 mod atomic;
 mod builder;
+mod counter;
 mod error;
 mod format;
 #[cfg(feature = "gltf")]

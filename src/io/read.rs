@@ -52,13 +52,27 @@ impl ReadOptions {
     /// # Errors
     /// As [`read()`].
     pub fn read(&self, path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
+        self.read_with_progress(path, &|_| ())
+    }
+
+    /// As [`read()`], telling `progress` again and again which share of the work is done, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`read()`].
+    pub fn read_with_progress(
+        &self,
+        path: impl AsRef<Path>,
+        progress: &dyn Fn(f64),
+    ) -> Result<MeshFile, ReadError> {
         let path = path.as_ref();
-        let (source, format) = self.open(path)?;
-        match format {
+        let (source, format) = self.open(path, progress)?;
+        let file = match format {
             #[cfg(feature = "gltf")]
-            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent())?.merge(),
-            _ => read_source(source, format),
-        }
+            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent())?.merge()?,
+            _ => read_source(source, format)?,
+        };
+        progress(1.0);
+        Ok(file)
     }
 
     /// As [`read_scene()`].
@@ -67,12 +81,27 @@ impl ReadOptions {
     /// As [`read()`].
     #[cfg(feature = "gltf")]
     pub fn read_scene(&self, path: impl AsRef<Path>) -> Result<Scene, ReadError> {
+        self.read_scene_with_progress(path, &|_| ())
+    }
+
+    /// As [`read_scene()`], telling `progress` again and again which share of the work is done, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`read()`].
+    #[cfg(feature = "gltf")]
+    pub fn read_scene_with_progress(
+        &self,
+        path: impl AsRef<Path>,
+        progress: &dyn Fn(f64),
+    ) -> Result<Scene, ReadError> {
         let path = path.as_ref();
-        let (source, format) = self.open(path)?;
-        match format {
-            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent()),
-            _ => Ok(read_source(source, format)?.into()),
-        }
+        let (source, format) = self.open(path, progress)?;
+        let scene = match format {
+            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent())?,
+            _ => read_source(source, format)?.into(),
+        };
+        progress(1.0);
+        Ok(scene)
     }
 
     /// As [`read_terrain()`].
@@ -85,11 +114,27 @@ impl ReadOptions {
         path: impl AsRef<Path>,
         options: &TerrainOptions,
     ) -> Result<MeshFile, ReadError> {
-        let (source, format) = self.open(path.as_ref())?;
-        match format {
-            Format::Las | Format::Laz => las::read(&source.into_bytes()?, options),
-            _ => Err(ReadError::UnknownEnding),
-        }
+        self.read_terrain_with_progress(path, options, &|_| ())
+    }
+
+    /// As [`read_terrain()`], telling `progress` again and again which share of the work is done, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`read_terrain()`].
+    #[cfg(feature = "las")]
+    pub fn read_terrain_with_progress(
+        &self,
+        path: impl AsRef<Path>,
+        options: &TerrainOptions,
+        progress: &dyn Fn(f64),
+    ) -> Result<MeshFile, ReadError> {
+        let (source, format) = self.open(path.as_ref(), progress)?;
+        let file = match format {
+            Format::Las | Format::Laz => las::read(&source.into_bytes()?, options)?,
+            _ => return Err(ReadError::UnknownEnding),
+        };
+        progress(1.0);
+        Ok(file)
     }
 }
 
