@@ -7,6 +7,9 @@ use crate::error::EncodeError;
 use crate::mesh::TriMesh;
 use glam::DVec3;
 
+/// What of the time finding the levels takes; the rest are details.
+const SHARE_OF_LEVELS: f64 = 0.8;
+
 /// A mesh as base mesh and details.
 ///
 /// Its vertices have an order of their own, coarse before fine: M^k has the first ones.
@@ -34,23 +37,41 @@ impl Decomposition {
     /// # Errors
     /// If the mesh has no usable triangle, or spans more than a double can hold.
     pub fn new(mesh: &TriMesh, options: &Options) -> Result<Self, EncodeError> {
-        let MeshHierarchy { hierarchy, source, unit } = Hierarchy::of_mesh(mesh, options)?;
+        Self::new_with_progress(mesh, options, &|_| ())
+    }
+
+    /// As [`Decomposition::new`], telling `progress` after each level which share of the work is done, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`Decomposition::new`].
+    pub fn new_with_progress(
+        mesh: &TriMesh,
+        options: &Options,
+        progress: &dyn Fn(f64),
+    ) -> Result<Self, EncodeError> {
+        let of_levels = |done: f64| progress(done * SHARE_OF_LEVELS);
+        let MeshHierarchy { hierarchy, source, unit } = Hierarchy::of_mesh(mesh, options, &of_levels)?;
         let place = |&v: &u32| DVec3::from_array(mesh.positions()[v as usize]) * unit;
         let positions = source.iter().map(place).collect();
-        let mut decomposition = Self::of_hierarchy(hierarchy, positions, options.prediction, options.update);
+        let of_details = |done: f64| progress(SHARE_OF_LEVELS + done * (1.0 - SHARE_OF_LEVELS));
+        let Options { prediction, update, .. } = *options;
+        let mut decomposition = Self::of_hierarchy(hierarchy, positions, prediction, update, &of_details);
         decomposition.input = mesh.clone();
         decomposition.source = source;
         decomposition.unit = unit;
         Ok(decomposition)
     }
 
-    /// Analyses positions of the finest level; `input`, `source` and `unit` are left to the caller.
+    /// Analyses positions of the finest level; `input`, `source` and `unit` are left to the caller. Tells `progress`
+    /// after each level which share is done.
     pub(super) fn of_hierarchy(
         hierarchy: Hierarchy,
         positions: Vec<DVec3>,
         prediction: Prediction,
         update: bool,
+        progress: &dyn Fn(f64),
     ) -> Self {
+        let num_vertices = positions.len().max(1) as f64;
         let mut positions = positions;
         let mut masses = vec![1.0; positions.len()];
         let (mut splits, mut details) = (Vec::new(), Vec::new());
@@ -61,7 +82,9 @@ impl Decomposition {
             }
             details.push(split.analyse(hierarchy.triangles(k), prediction, &mut positions));
             splits.push(split);
+            progress(1.0 - positions.len() as f64 / num_vertices);
         }
+        progress(1.0);
         splits.reverse();
         details.reverse();
         let (input, source, unit) = (TriMesh::default(), Vec::new(), 1.0);

@@ -47,7 +47,7 @@ mod options;
 mod weights;
 
 pub use decomposition::Decomposition;
-pub use denoise::{Threshold, denoised};
+pub use denoise::{Threshold, denoised, denoised_with_progress};
 pub use detail_transfer::DetailTransfer;
 pub use edit_error::EditError;
 pub use options::{Options, Prediction};
