@@ -6,7 +6,7 @@ use super::output::print_json;
 use super::quantity;
 use super::ui::Ui;
 use anyhow::Context;
-use lwc::metrics::{CompareOptions, Comparison, Distance, compare};
+use lwc::metrics::{CompareOptions, Comparison, Distance, compare_with_progress};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -38,14 +38,16 @@ pub struct Compare {
 
 /// Reads both, measures, reports.
 pub fn run(args: &Compare, ui: &Ui) -> anyhow::Result<()> {
-    let a = read_mesh_or_stream(&args.a, args.limits.limits(), &args.reading, ui)?;
-    let b = read_mesh_or_stream(&args.b, args.limits.limits(), &args.reading, ui)?;
+    let bar = ui.bar();
+    let [first, second, measuring] = bar.split([("reading", 15.0), ("reading", 15.0), ("measuring", 70.0)]);
+    let a = read_mesh_or_stream(&args.a, args.limits.limits(), &args.reading, first, ui)?;
+    let b = read_mesh_or_stream(&args.b, args.limits.limits(), &args.reading, second, ui)?;
     let mut options = CompareOptions::new();
     options.samples = args.samples.map(|samples| samples as usize);
-    let found = {
-        let _spinner = ui.spinner("measuring");
-        compare(&a, &b, &options).with_context(|| format!("{}, {}", args.a.display(), args.b.display()))?
-    };
+    measuring.set(0.0);
+    let found = compare_with_progress(&a, &b, &options, &|done| measuring.set(done))
+        .with_context(|| format!("{}, {}", args.a.display(), args.b.display()))?;
+    drop(bar);
     if args.json {
         print_json(io::stdout().lock(), &to_json(args, &found))?;
     } else {

@@ -2,9 +2,9 @@
 
 use super::args::LimitArgs;
 use super::exit::Failure;
-use super::input::{DecodedStream, StreamSource, note_if_incomplete, reached};
 use super::output::{Destination, with_ending};
 use super::quantity::{self, counted};
+use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, reached};
 use super::ui::Ui;
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -54,15 +54,17 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let (destination, format) = destination(args, source.path())?;
     destination.check(source.path(), format.is_text())?;
 
-    let mut options = DecodeOptions::new().limits(args.limits.limits()).compensate(!args.uncompensated);
-    if let Some(level) = args.level {
-        options = options.level(level);
-    }
-    let DecodedStream { decoder, error } = source.decode(args.bytes, options, ui)?;
+    let options = DecodeOptions::new().limits(args.limits.limits()).compensate(!args.uncompensated);
+    let bar = ui.bar();
+    let [decoding, writing] = bar.split([("decoding", 90.0), ("writing", 10.0)]);
+    let wanted = Wanted::new(options, args.level);
+    let DecodedStream { decoder, error } = source.decode(args.bytes, wanted, decoding, ui)?;
     let sound = sound_mesh(&decoder, error, args, &source.name(), ui);
     let (mesh, attributes) = sound.with_context(|| source.name())?;
     note_what_is_missing(&decoder, args, &source.name(), ui);
+    writing.set(0.0);
     let report = write(&destination, format, &mesh, &attributes)?;
+    drop(bar);
     for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {
         if !names.is_empty() {
             ui.warn(&destination.name(), &format!("{what}: {}", names.join(", ")));

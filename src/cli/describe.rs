@@ -1,6 +1,7 @@
 //! `lwc describe`: a descriptor at every vertex, as numbers or colours.
 
 use super::args::{Reading, Scale};
+use super::bar::{Part, Vertices};
 use super::exit::Failure;
 use super::input::read_mesh;
 use super::output::{Destination, has_ending};
@@ -8,12 +9,13 @@ use super::render::args::{HeatArgs, Picture};
 use super::render::heat_picture;
 use super::ui::Ui;
 use anyhow::Context;
-use lwc::descriptors::{Features, evaluate_with_features, evaluate_with_progress, mean_edge_length};
+use lwc::descriptors::{
+    Features, FeaturesError, evaluate_with_features, evaluate_with_progress, mean_edge_length,
+};
 use lwc::io::MeshFile;
 use lwc::render::{Heat, sequential};
 use std::io::{self, Write};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Evaluate a descriptor at every vertex of a mesh.
 ///
@@ -45,41 +47,43 @@ pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
     let is_text = matches!(Kind::of(&destination), Some(Kind::Table));
     destination.check(Some(&args.input), is_text)?;
 
-    let MeshFile { mesh, attributes, .. } = read_mesh(&args.input, &args.reading, ui)?;
-    let choices = &args.scale.descriptor_attributes;
-    let mean_edge = mean_edge_length(&mesh);
-    let values = {
-        let bar = ui.bar(args.scale.descriptor.name());
-        let done = AtomicUsize::new(0);
-        let progress = |more: usize| {
-            let done = done.fetch_add(more, Ordering::Relaxed) + more;
-            bar.set(done as f64 / mesh.num_vertices().max(1) as f64);
-        };
-        let (descriptor, window) = (args.scale.descriptor, args.scale.window.window());
-        if choices.is_empty() {
-            evaluate_with_progress(descriptor, &mesh, &window, mean_edge, &progress)
-        } else {
-            Features::choose(&mesh, &attributes, choices)
-                .and_then(|features| {
-                    evaluate_with_features(descriptor, &mesh, &features, &window, mean_edge, &progress)
-                })
-                .with_context(|| args.input.display().to_string())?
-        }
-    };
+    let bar = ui.bar();
+    let descriptor = args.scale.descriptor.name();
+    let [reading, evaluating, writing] =
+        bar.split([("reading", 20.0), (descriptor, 70.0), ("writing", 10.0)]);
+    let file = read_mesh(&args.input, &args.reading, reading, ui)?;
+    let mean_edge = mean_edge_length(&file.mesh);
+    let values = evaluate(&file, &args.scale, mean_edge, evaluating)
+        .with_context(|| args.input.display().to_string())?;
     ui.detail(&args.input.display().to_string(), &format!("mean edge length {mean_edge}"));
+    writing.set(0.0);
     match Kind::of(&destination) {
         Some(Kind::Picture) => {
             let picture =
-                heat_picture(&mesh, &values, args.scale.descriptor.name(), &args.heat, &args.picture)?;
+                heat_picture(&file.mesh, &values, args.scale.descriptor.name(), &args.heat, &args.picture)?;
             destination.write(|out| picture.write_png(out))
         }
         Some(Kind::Mesh) => {
             let heat = Heat::new(&values, args.heat.clip);
             let colours: Vec<[u8; 3]> = heat.values.iter().map(|&value| sequential(value)).collect();
-            destination.write(|out| lwc::io::write_ply_coloured(out, &mesh, &colours))
+            destination.write(|out| lwc::io::write_ply_coloured(out, &file.mesh, &colours))
         }
         _ => destination.write(|out| write_csv(out, &values)),
     }
+}
+
+/// The descriptor at each vertex.
+fn evaluate(file: &MeshFile, scale: &Scale, mean_edge: f64, part: Part) -> Result<Vec<f64>, FeaturesError> {
+    let MeshFile { mesh, attributes, .. } = file;
+    let (descriptor, window) = (scale.descriptor, scale.window.window());
+    let vertices = Vertices::new(mesh.num_vertices(), part);
+    let progress = |more: usize| vertices.add(more);
+    let choices = &scale.descriptor_attributes;
+    if choices.is_empty() {
+        return Ok(evaluate_with_progress(descriptor, mesh, &window, mean_edge, &progress));
+    }
+    let features = Features::choose(mesh, attributes, choices)?;
+    evaluate_with_features(descriptor, mesh, &features, &window, mean_edge, &progress)
 }
 
 /// What is written.

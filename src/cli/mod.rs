@@ -1,9 +1,11 @@
 //! The command line: one file per subcommand, on the public API of the library.
 
 pub mod args;
+mod bar;
 pub mod compare;
 pub mod completions;
 pub mod decode;
+mod decoding;
 pub mod describe;
 pub mod edit;
 pub mod encode;
@@ -20,7 +22,9 @@ pub mod program;
 mod quantity;
 mod rate_distortion;
 pub mod render;
+mod screen;
 pub mod signals;
+mod stream;
 pub mod ui;
 mod verify;
 pub mod view;

@@ -1,14 +1,15 @@
 //! `lwc info --plot`: how near each prefix of a stream comes to its finest mesh.
 
+use super::bar::Part;
+use super::decoding::Decoding;
 use super::exit::Failure;
-use super::input::StreamSource;
 use super::output::{Destination, has_ending};
+use super::stream::StreamSource;
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::metrics::{CompareOptions, compare};
 use lwc::render::{Chart, Series, log_ticks};
 use lwc::{DecodeError, DecodeOptions, Decoder, Limits};
-use std::io::Read;
 use std::path::Path;
 
 /// Samples of each surface; the curve is drawn, not tabulated.
@@ -30,9 +31,11 @@ pub fn run(input: Option<&Path>, limits: Limits, plot: &Path, ui: &Ui) -> anyhow
     }
     let source = StreamSource::new(input)?;
     destination.check(source.path(), true)?;
-    let mut bytes = Vec::new();
-    source.open()?.read_to_end(&mut bytes).map_err(Failure::Input).with_context(|| source.name())?;
-    let points = measure(&bytes, limits, ui).with_context(|| source.name())?;
+    let bytes = source.read()?;
+    let bar = ui.bar();
+    let parts = bar.split([("decoding", 20.0), ("measuring", 80.0)]);
+    let points = measure(&bytes, limits, parts).with_context(|| source.name())?;
+    drop(bar);
     let name = source.path().and_then(Path::file_name).unwrap_or_default().to_string_lossy().into_owned();
     let chart =
         chart(name, &points).ok_or_else(|| Failure::Usage("a stream of one pass has no curve".into()))?;
@@ -45,10 +48,12 @@ pub fn run(input: Option<&Path>, limits: Limits, plot: &Path, ui: &Ui) -> anyhow
     }
 }
 
-fn measure(bytes: &[u8], limits: Limits, ui: &Ui) -> anyhow::Result<Vec<Point>> {
+fn measure(bytes: &[u8], limits: Limits, [decoding, measuring]: [Part; 2]) -> anyhow::Result<Vec<Point>> {
     let options = DecodeOptions::new().limits(limits);
-    let finest = lwc::decode(bytes, options)?;
-    let bar = ui.bar("measuring");
+    let mut whole = Decoding::new(options, None, None, decoding);
+    whole.take(bytes, |_| ())?;
+    let finest = whole.decoder.preview().ok_or(DecodeError::NoMesh)?;
+    let num_passes = whole.decoder.passes_done();
     let mut decoder = Decoder::with_options(options);
     decoder.feed(bytes)?;
     let mut points = Vec::new();
@@ -56,7 +61,7 @@ fn measure(bytes: &[u8], limits: Limits, ui: &Ui) -> anyhow::Result<Vec<Point>> 
         let mesh = decoder.mesh().ok_or(DecodeError::NoMesh)?.to_tri_mesh();
         let distance = compare(&finest, &mesh, &CompareOptions::new().samples(SAMPLES))?;
         points.push(Point { bytes: update.pass.end, db: distance.psnr_db() });
-        bar.set(update.pass.end as f64 / bytes.len().max(1) as f64);
+        measuring.set(points.len() as f64 / num_passes as f64);
     }
     Ok(points)
 }

@@ -3,6 +3,7 @@
 pub mod args;
 mod report;
 
+use super::bar::Part;
 use super::exit::Failure;
 use super::input::{read_for_stream, read_terrain};
 use super::output::Destination;
@@ -22,25 +23,29 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     destination.check(Some(&args.input), false)?;
     check_ending(&destination).with_context(|| destination.name())?;
     let start = Instant::now();
+    let bar = ui.bar();
+    let verifying = if args.verify { 10.0 } else { 0.0 };
+    let [reading, encoding, verifying] =
+        bar.split([("reading", 5.0), ("encoding", 85.0), ("verifying", verifying)]);
     let mut file = match args.terrain.options() {
-        Some(options) => read_terrain(&args.input, &options, &args.reading, ui)?,
-        None => read_for_stream(&args.input, args.merge, &args.reading, ui)?,
+        Some(options) => read_terrain(&args.input, &options, &args.reading, reading, ui)?,
+        None => read_for_stream(&args.input, args.merge, &args.reading, reading, ui)?,
     };
     let left_out = if args.no_attributes { drop_attributes(&mut file) } else { Vec::new() };
     let read_seconds = start.elapsed().as_secs_f64();
 
     let name = args.input.display().to_string();
     let start = Instant::now();
-    let (encoded, options) = encode(&file, args, ui).with_context(|| name.clone())?;
+    let (encoded, options) = encode(&file, args, encoding).with_context(|| name.clone())?;
     let encode_seconds = start.elapsed().as_secs_f64();
     warn_about(&name, &encoded, ui);
 
     if args.verify {
         let start = Instant::now();
-        let _spinner = ui.spinner("verifying");
-        verify::verify(&file.mesh, &file.attributes, &options, &encoded).with_context(|| name.clone())?;
+        verify::verify(&file, &options, &encoded, verifying).with_context(|| name.clone())?;
         ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
     }
+    drop(bar);
     destination.write(|out| out.write_all(&encoded.bytes))?;
     let (file, encoded) = (&file, &encoded);
     let report = Report { args, file, left_out, encoded, destination, read_seconds, encode_seconds };
@@ -62,25 +67,25 @@ fn check_ending(destination: &Destination) -> Result<(), Failure> {
 const LOSSLESS_BITS: [u32; 3] = [12, 15, 18];
 
 /// The smallest stream, and its options.
-fn encode(file: &MeshFile, args: &Encode, ui: &Ui) -> Result<(Encoded, EncodeOptions), lwc::EncodeError> {
-    let bar = ui.bar("encoding");
-    let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
-    let encode = |options: EncodeOptions| {
+fn encode(file: &MeshFile, args: &Encode, part: Part) -> Result<(Encoded, EncodeOptions), lwc::EncodeError> {
+    let encode = |options: EncodeOptions, part: Part| {
+        let progress = |now: lwc::Progress| part.set_stage(now.stage, now.fraction);
         let encoded = lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress)?;
         Ok((encoded, options))
     };
     let options = args.options();
     if !args.lossless || args.quantization.is_some() {
-        return encode(options);
+        return encode(options, part);
     }
-    let with = |bits: u32| {
+    let with = |i: usize| {
         let mut options = options.clone();
-        options.quantization = bits;
-        encode(options)
+        options.quantization = LOSSLESS_BITS[i];
+        let place = |i: usize| i as f64 / LOSSLESS_BITS.len() as f64;
+        encode(options, part.between(place(i), place(i + 1)))
     };
-    let mut best = with(LOSSLESS_BITS[0])?;
-    for bits in &LOSSLESS_BITS[1..] {
-        let other = with(*bits)?;
+    let mut best = with(0)?;
+    for i in 1..LOSSLESS_BITS.len() {
+        let other = with(i)?;
         if other.0.bytes.len() < best.0.bytes.len() {
             best = other;
         }

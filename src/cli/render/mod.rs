@@ -3,13 +3,15 @@
 pub mod args;
 mod montage;
 
+use super::bar::{Bar, Part, Vertices};
 use super::exit::Failure;
-use super::input::{DecodedStream, StreamSource, in_place, note_if_incomplete, read_mesh};
+use super::input::{in_place, read_mesh};
 use super::output::{Destination, has_ending};
+use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete};
 use super::ui::Ui;
 use anyhow::Context;
 use args::{AttributeKind, ColorBy, HeatArgs, Picture, Render};
-use lwc::descriptors::{evaluate, mean_edge_length};
+use lwc::descriptors::{evaluate_with_progress, mean_edge_length};
 use lwc::io::MeshFile;
 use lwc::mesh::Attributes;
 use lwc::render::{Camera, CornerPaint, Heat, Image, Paint, RenderError, render, with_legend};
@@ -20,24 +22,40 @@ pub fn run(args: &Render, ui: &Ui) -> anyhow::Result<()> {
     let destination = Destination::new(args.output.clone());
     check_ending(&destination).with_context(|| destination.name())?;
     destination.check(Some(&args.input), false)?;
-    let picture = if args.montage {
-        montage::montage(args, ui)?
-    } else {
-        let MeshFile { mesh, attributes, .. } = read(args, ui)?;
-        match args.color_by {
-            Some(ColorBy::Descriptor(descriptor)) => {
-                let values = evaluate(descriptor, &mesh, &args.window.window(), mean_edge_length(&mesh));
-                heat_picture(&mesh, &values, descriptor.name(), &args.heat, &args.picture)?
-            }
-            Some(ColorBy::Attribute(kind)) => {
-                let paint =
-                    paint(&mesh, &attributes, kind).with_context(|| args.input.display().to_string())?;
-                picture_with(&mesh, Paint::Corners(&paint), &args.picture)?
-            }
-            None => plain_picture(&mesh, &args.picture)?,
-        }
-    };
+    let bar = ui.bar();
+    let picture = if args.montage { montage::montage(args, &bar)? } else { picture(args, &bar, ui)? };
     destination.write(|out| picture.write_png(out))
+}
+
+/// One picture.
+fn picture(args: &Render, bar: &Bar, ui: &Ui) -> anyhow::Result<Image> {
+    let reading = if has_ending(&args.input, "lwc") { "decoding" } else { "reading" };
+    let (descriptor, evaluating) = match args.color_by {
+        Some(ColorBy::Descriptor(descriptor)) => (descriptor.name(), 50.0),
+        _ => ("drawing", 0.0),
+    };
+    let [reading, evaluating, drawing] =
+        bar.split([(reading, 50.0), (descriptor, evaluating), ("drawing", 20.0)]);
+    let MeshFile { mesh, attributes, .. } = read(args, reading, ui)?;
+    match args.color_by {
+        Some(ColorBy::Descriptor(descriptor)) => {
+            let vertices = Vertices::new(mesh.num_vertices(), evaluating);
+            let (window, mean_edge) = (args.window.window(), mean_edge_length(&mesh));
+            let progress = |more: usize| vertices.add(more);
+            let values = evaluate_with_progress(descriptor, &mesh, &window, mean_edge, &progress);
+            drawing.set(0.0);
+            Ok(heat_picture(&mesh, &values, descriptor.name(), &args.heat, &args.picture)?)
+        }
+        Some(ColorBy::Attribute(kind)) => {
+            let paint = paint(&mesh, &attributes, kind).with_context(|| args.input.display().to_string())?;
+            drawing.set(0.0);
+            Ok(picture_with(&mesh, Paint::Corners(&paint), &args.picture)?)
+        }
+        None => {
+            drawing.set(0.0);
+            Ok(plain_picture(&mesh, &args.picture)?)
+        }
+    }
 }
 
 fn check_ending(destination: &Destination) -> Result<(), Failure> {
@@ -56,20 +74,17 @@ fn paint(mesh: &TriMesh, attributes: &Attributes, kind: AttributeKind) -> Result
 }
 
 /// The mesh to show.
-fn read(args: &Render, ui: &Ui) -> anyhow::Result<MeshFile> {
+fn read(args: &Render, part: Part, ui: &Ui) -> anyhow::Result<MeshFile> {
     if !has_ending(&args.input, "lwc") {
         if args.level.is_some() || args.bytes.is_some() {
             let what = "--level and --bytes are for streams (.lwc)".to_owned();
             return Err(Failure::Usage(what)).with_context(|| args.input.display().to_string());
         }
-        return read_mesh(&args.input, &args.reading, ui);
+        return read_mesh(&args.input, &args.reading, part, ui);
     }
     let source = StreamSource::File(args.input.clone());
-    let mut options = DecodeOptions::new().limits(args.limits.limits());
-    if let Some(level) = args.level {
-        options = options.level(level);
-    }
-    let DecodedStream { decoder, error } = source.decode(args.bytes, options, ui)?;
+    let wanted = Wanted::new(DecodeOptions::new().limits(args.limits.limits()), args.level);
+    let DecodedStream { decoder, error } = source.decode(args.bytes, wanted, part, ui)?;
     if let Some(error) = error {
         return Err(error).with_context(|| source.name());
     }

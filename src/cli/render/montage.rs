@@ -1,9 +1,9 @@
 //! All levels of a stream side by side.
 
 use super::args::Render;
+use crate::cli::bar::{Bar, Part};
 use crate::cli::exit::Failure;
 use crate::cli::output::has_ending;
-use crate::cli::ui::Ui;
 use anyhow::Context;
 use lwc::metrics::{CompareOptions, compare};
 use lwc::render::{Camera, Image, Paint, RenderError, render};
@@ -20,15 +20,15 @@ struct Level {
     end: u64,
 }
 
-pub(super) fn montage(args: &Render, ui: &Ui) -> anyhow::Result<Image> {
+pub(super) fn montage(args: &Render, bar: &Bar) -> anyhow::Result<Image> {
     let name = args.input.display().to_string();
     if !has_ending(&args.input, "lwc") {
         let what = "a montage shows the levels of a stream (.lwc)".to_owned();
         return Err(Failure::Usage(what)).context(name);
     }
     let bytes = std::fs::read(&args.input).map_err(Failure::Input).with_context(|| name.clone())?;
-    let bar = ui.bar("drawing");
-    let levels = decode(&bytes, args).with_context(|| name.clone())?;
+    let [decoding, drawing] = bar.split([("decoding", 20.0), ("drawing", 80.0)]);
+    let levels = decode(&bytes, args, decoding).with_context(|| name.clone())?;
     let finest = levels.last().ok_or(DecodeError::NoMesh).with_context(|| name.clone())?;
     let wanted = |level: &&Level| args.levels.is_empty() || args.levels.contains(&level.level);
     let shown: Vec<&Level> = levels.iter().filter(wanted).collect();
@@ -42,7 +42,7 @@ pub(super) fn montage(args: &Render, ui: &Ui) -> anyhow::Result<Image> {
     let camera = Camera::fit(&finest.mesh, args.picture.view, args.picture.up, width, height);
     let mut cells = Vec::new();
     for (i, level) in shown.iter().enumerate() {
-        bar.set(i as f64 / shown.len() as f64);
+        drawing.set(i as f64 / shown.len() as f64);
         let picture = render(&level.mesh, Paint::Plain, &camera, &style)?;
         let options = CompareOptions::new().samples(SAMPLES);
         let distance = compare(&finest.mesh, &level.mesh, &options).with_context(|| name.clone())?;
@@ -59,12 +59,13 @@ pub(super) fn montage(args: &Render, ui: &Ui) -> anyhow::Result<Image> {
 }
 
 /// Every level in turn; a level lasts until the next split begins.
-fn decode(bytes: &[u8], args: &Render) -> Result<Vec<Level>, DecodeError> {
+fn decode(bytes: &[u8], args: &Render, part: Part) -> Result<Vec<Level>, DecodeError> {
     let mut decoder = Decoder::new(args.limits.limits());
     decoder.feed(bytes)?;
     let mut levels: Vec<Level> = Vec::new();
     while let Some(update) = decoder.step()? {
         let pass = update.pass;
+        part.set(pass.end as f64 / bytes.len() as f64);
         let passes = decoder.info().map_or(&[][..], |info| info.passes());
         let next = passes.get(decoder.passes_done());
         // Only the last mesh of a level is copied.

@@ -111,12 +111,13 @@ fn has_assets(info: &StreamInfo) -> bool {
 }
 
 fn encode(args: &View, ui: &Ui) -> anyhow::Result<Vec<u8>> {
-    let file = read_mesh(&args.input, &args.reading, ui)?;
+    let bar = ui.bar();
+    let [reading, encoding] = bar.split([("reading", 5.0), ("encoding", 95.0)]);
+    let file = read_mesh(&args.input, &args.reading, reading, ui)?;
     let mut options = EncodeOptions::default();
     options.descriptor = args.scale.descriptor;
     options.window = args.scale.window.window();
-    let bar = ui.bar("encoding");
-    let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
+    let progress = |now: lwc::Progress| encoding.set_stage(now.stage, now.fraction);
     Ok(lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress)?.bytes)
 }
 
