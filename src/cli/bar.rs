@@ -36,7 +36,9 @@ impl Bar {
     /// The parts of a command that come one after the other, with their shares of the time it takes, whose unit does not
     /// matter.
     pub fn split<const N: usize>(&self, shares: [(&'static str, f64); N]) -> [Part<'_>; N] {
-        Part { bar: self, stage: "", begin: 0.0, length: 1.0 }.split(shares)
+        let parts = Part { bar: self, stage: "", begin: 0.0, length: 1.0 }.split(shares);
+        parts.iter().take(1).for_each(|first| first.set(0.0));
+        parts
     }
 
     /// Goes to a share of the whole, unless it is further already.

@@ -39,7 +39,7 @@ pub struct Compare {
 /// Reads both, measures, reports.
 pub fn run(args: &Compare, ui: &Ui) -> anyhow::Result<()> {
     let bar = ui.bar();
-    let [first, second, measuring] = bar.split([("reading", 15.0), ("reading", 15.0), ("measuring", 70.0)]);
+    let [first, second, measuring] = bar.split([("reading", 8.0), ("reading", 8.0), ("measuring", 84.0)]);
     let a = read_mesh_or_stream(&args.a, args.limits.limits(), &args.reading, first, ui)?;
     let b = read_mesh_or_stream(&args.b, args.limits.limits(), &args.reading, second, ui)?;
     let mut options = CompareOptions::new();

@@ -2,8 +2,8 @@
 
 use super::args::LimitArgs;
 use super::exit::Failure;
-use super::output::{Destination, with_ending};
-use super::quantity::{self, counted};
+use super::output::{Destination, say_written, size_of, with_ending};
+use super::quantity;
 use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, reached};
 use super::ui::Ui;
 use anyhow::Context;
@@ -11,7 +11,6 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lwc::io::{Format, Scene, WriteError, WriteReport};
 use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Decode a stream, or as much of it as there is.
@@ -51,17 +50,23 @@ pub struct Decode {
 /// Reads and decodes at once, writes, reports.
 pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let source = StreamSource::new(args.input.as_deref())?;
-    let (destination, format) = destination(args, source.path())?;
-    destination.check(source.path(), format.is_text())?;
+    let (chosen, format) = destination(args, source.path())?;
+    if let Some(destination) = &chosen {
+        destination.check(source.path(), format.is_text())?;
+    }
 
     let options = DecodeOptions::new().limits(args.limits.limits()).compensate(!args.uncompensated);
     let bar = ui.bar();
-    let [decoding, writing] = bar.split([("decoding", 90.0), ("writing", 10.0)]);
+    let [decoding, writing] = bar.split([("decoding", 80.0), ("writing", 20.0)]);
     let wanted = Wanted::new(options, args.level);
     let DecodedStream { decoder, error } = source.decode(args.bytes, wanted, decoding, ui)?;
     let sound = sound_mesh(&decoder, error, args, &source.name(), ui);
     let (mesh, attributes) = sound.with_context(|| source.name())?;
     note_what_is_missing(&decoder, args, &source.name(), ui);
+    let destination = match (chosen, source.path()) {
+        (None, Some(stream)) => beside(stream, args, &decoder, format)?,
+        (chosen, _) => chosen.unwrap_or(Destination::Stdout),
+    };
     writing.set(0.0);
     let report = write(&destination, format, &mesh, &attributes)?;
     drop(bar);
@@ -71,34 +76,36 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
         }
     }
 
-    if !ui.is_quiet() && destination != Destination::Stdout {
-        let name = destination.name();
-        let vertices = counted(mesh.num_vertices(), "vertex", "vertices");
-        let faces = counted(mesh.num_triangles(), "face", "faces");
-        let how_far = reached(&decoder).unwrap_or_default();
-        writeln!(io::stdout(), "{name}: {vertices}, {faces}, {how_far}")?;
-    }
+    let how_far = reached(&decoder).unwrap_or_default();
+    say_written(&destination, &format!("{}, {how_far}", size_of(&mesh)), ui);
     Ok(())
 }
 
-/// Where the mesh goes, and as what.
-fn destination(args: &Decode, source: Option<&Path>) -> Result<(Destination, Format), anyhow::Error> {
+/// Where the mesh goes, if that is said, and as what.
+fn destination(args: &Decode, source: Option<&Path>) -> anyhow::Result<(Option<Destination>, Format)> {
     let usage = |what: &str| anyhow::Error::from(Failure::Usage(what.into()));
     let Some(output) = &args.output else {
-        let source = source.ok_or_else(|| usage("a stream from standard input needs -o FILE, or -o -"))?;
-        let format = args.format.unwrap_or(Format::Obj);
-        return Ok((Destination::File(default_output(source, args.level, format)), format));
+        source.ok_or_else(|| usage("a stream from standard input needs -o FILE, or -o -"))?;
+        return Ok((None, args.format.unwrap_or(Format::Obj)));
     };
     let destination = Destination::new(output.clone());
     if destination == Destination::Stdout {
-        return Ok((destination, args.format.unwrap_or(Format::Obj)));
+        return Ok((Some(destination), args.format.unwrap_or(Format::Obj)));
     }
     let by_ending = Format::from_path(output).filter(|format| format.is_written());
     let by_ending = by_ending.ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
     if args.format.is_some_and(|format| format != by_ending) {
         return Err(usage("--format differs from the ending")).with_context(|| destination.name());
     }
-    Ok((destination, by_ending))
+    Ok((Some(destination), by_ending))
+}
+
+/// The usual file in the folder of the stream. If a level is asked for, its name says which one is there.
+fn beside(stream: &Path, args: &Decode, decoder: &Decoder, format: Format) -> anyhow::Result<Destination> {
+    let level = args.level.and_then(|_| decoder.mesh()).map(|mesh| mesh.level());
+    let destination = Destination::File(default_output(stream, level, format));
+    destination.check(Some(stream), format.is_text())?;
+    Ok(destination)
 }
 
 /// `model.lwc` → `model.level5.obj` or `model.decoded.obj`: never the name of the model itself.

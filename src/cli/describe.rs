@@ -4,11 +4,13 @@ use super::args::{Reading, Scale};
 use super::bar::{Part, Vertices};
 use super::exit::Failure;
 use super::input::read_mesh;
-use super::output::{Destination, has_ending};
+use super::output::{Destination, has_ending, pixels_of, say_written, size_of};
+use super::quantity::counted;
 use super::render::args::{HeatArgs, Picture};
 use super::render::heat_picture;
 use super::ui::Ui;
 use anyhow::Context;
+use lwc::TriMesh;
 use lwc::descriptors::{
     Features, FeaturesError, evaluate_with_features, evaluate_with_progress, mean_edge_length,
 };
@@ -50,25 +52,43 @@ pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
     let bar = ui.bar();
     let descriptor = args.scale.descriptor.name();
     let [reading, evaluating, writing] =
-        bar.split([("reading", 20.0), (descriptor, 70.0), ("writing", 10.0)]);
+        bar.split([("reading", 30.0), (descriptor, 60.0), ("writing", 10.0)]);
     let file = read_mesh(&args.input, &args.reading, reading, ui)?;
     let mean_edge = mean_edge_length(&file.mesh);
     let values = evaluate(&file, &args.scale, mean_edge, evaluating)
         .with_context(|| args.input.display().to_string())?;
     ui.detail(&args.input.display().to_string(), &format!("mean edge length {mean_edge}"));
     writing.set(0.0);
-    match Kind::of(&destination) {
+    let what = write(args, &file.mesh, &values, &destination)?;
+    drop(bar);
+    say_written(&destination, &what, ui);
+    Ok(())
+}
+
+/// Writes what the ending says, and returns what that is.
+fn write(
+    args: &Describe,
+    mesh: &TriMesh,
+    values: &[f64],
+    destination: &Destination,
+) -> anyhow::Result<String> {
+    match Kind::of(destination) {
         Some(Kind::Picture) => {
-            let picture =
-                heat_picture(&file.mesh, &values, args.scale.descriptor.name(), &args.heat, &args.picture)?;
-            destination.write(|out| picture.write_png(out))
+            let name = args.scale.descriptor.name();
+            let picture = heat_picture(mesh, values, name, &args.heat, &args.picture)?;
+            destination.write(|out| picture.write_png(out))?;
+            Ok(pixels_of(&picture))
         }
         Some(Kind::Mesh) => {
-            let heat = Heat::new(&values, args.heat.clip);
+            let heat = Heat::new(values, args.heat.clip);
             let colours: Vec<[u8; 3]> = heat.values.iter().map(|&value| sequential(value)).collect();
-            destination.write(|out| lwc::io::write_ply_coloured(out, &file.mesh, &colours))
+            destination.write(|out| lwc::io::write_ply_coloured(out, mesh, &colours))?;
+            Ok(format!("{}, coloured by {}", size_of(mesh), args.scale.descriptor))
         }
-        _ => destination.write(|out| write_csv(out, &values)),
+        _ => {
+            destination.write(|out| write_csv(out, values))?;
+            Ok(counted(values.len(), "row", "rows"))
+        }
     }
 }
 

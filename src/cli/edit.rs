@@ -3,14 +3,12 @@
 use super::args::{LimitArgs, Reading};
 use super::exit::Failure;
 use super::input::read_mesh;
-use super::output::Destination;
-use super::quantity::counted;
+use super::output::{Destination, say_written, size_of};
 use super::stream::StreamSource;
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::io::{Format, WriteError};
 use lwc::multiresolution::DetailTransfer;
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 /// Put the details of a stream back on one of its coarse levels that was edited.
@@ -65,9 +63,6 @@ pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
     writing.set(0.0);
     lwc::io::write(path, &mesh).with_context(|| destination.name())?;
     drop(bar);
-    if !ui.is_quiet() {
-        let vertices = counted(mesh.num_vertices(), "vertex", "vertices");
-        writeln!(io::stdout(), "{}: {vertices}, details above level {level}", destination.name())?;
-    }
+    say_written(&destination, &format!("{}, details above level {level}", size_of(&mesh)), ui);
     Ok(())
 }

@@ -4,7 +4,7 @@ use super::args::{Reading, Scale};
 use super::exit::Failure;
 use super::gain::Gain;
 use super::input::read_mesh;
-use super::output::Destination;
+use super::output::{Destination, say_written, size_of};
 use super::quantity;
 use super::ui::Ui;
 use anyhow::Context;
@@ -116,6 +116,9 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
     drop(bar);
     if !ui.is_quiet() {
         io::stdout().lock().write_all(&report)?;
+    }
+    if let Some(destination) = &destination {
+        say_written(destination, &size_of(&filtered), ui);
     }
     Ok(())
 }

@@ -66,6 +66,9 @@ fn read(reader: &mut dyn Read) -> anyhow::Result<(StreamInfo, u64, Vec<u8>)> {
             let rest = io::copy(reader, &mut io::sink()).map_err(Failure::Input)?;
             return Ok((info, head.len() as u64 + rest, Vec::new()));
         }
+        if head.is_empty() {
+            return Err(Failure::Empty.into());
+        }
         if (read as u64) < wanted {
             return Err(Failure::CutTable.into());
         }

@@ -3,7 +3,7 @@
 use super::args::Reading;
 use super::bar::Part;
 use super::exit::Failure;
-use super::output::has_ending;
+use super::input_file::{self, holds_stream, is_stream};
 use super::quantity::counted;
 use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete};
 use super::ui::Ui;
@@ -11,6 +11,7 @@ use anyhow::Context;
 use lwc::io::{Format, MeshFile, ReadError, Scene, TerrainOptions};
 use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, TriMesh};
+use std::io;
 use std::path::Path;
 
 /// Reads a mesh file and warns about what it leaves out.
@@ -40,9 +41,20 @@ fn read_with(
     ui: &Ui,
 ) -> anyhow::Result<MeshFile> {
     let name = path.display().to_string();
+    check(path).with_context(|| name.clone())?;
     let file = read().map_err(with_hint).with_context(|| name.clone())?;
     warn_about(&name, &file, ui);
     Ok(file)
+}
+
+/// Whether it is a file that may be a mesh.
+fn check(path: &Path) -> Result<(), Failure> {
+    input_file::check(path)?;
+    if holds_stream(path) {
+        let what = "it is an lwc stream, not a mesh; `lwc decode` makes a mesh of it";
+        return Err(Failure::Input(io::Error::other(what)));
+    }
+    Ok(())
 }
 
 /// An error, and what to do about it.
@@ -108,7 +120,7 @@ pub fn read_mesh_or_stream(
     part: Part,
     ui: &Ui,
 ) -> anyhow::Result<TriMesh> {
-    if !has_ending(path, "lwc") {
+    if !is_stream(path) {
         return Ok(read_mesh(path, reading, part, ui)?.mesh);
     }
     let source = StreamSource::File(path.to_owned());

@@ -41,10 +41,8 @@ pub fn run(args: &Man, mut program: Command, ui: &Ui) -> anyhow::Result<()> {
         Destination::File(path).write(|out| write_page(out, command))?;
         num_pages += 1;
     }
-    if !ui.is_quiet() {
-        let pages = counted(num_pages, "manual page", "manual pages");
-        writeln!(io::stdout(), "{}: {pages}", folder.display())?;
-    }
+    let pages = counted(num_pages, "manual page", "manual pages");
+    ui.say(&format!("{}: {pages}", folder.display()));
     Ok(())
 }
 

@@ -15,6 +15,7 @@ pub mod filter;
 mod gain;
 pub mod info;
 mod input;
+mod input_file;
 pub mod man;
 mod output;
 mod passes;

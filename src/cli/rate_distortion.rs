@@ -3,7 +3,8 @@
 use super::bar::Part;
 use super::decoding::Decoding;
 use super::exit::Failure;
-use super::output::{Destination, has_ending};
+use super::output::{Destination, has_ending, pixels_of, say_written};
+use super::quantity::counted;
 use super::stream::StreamSource;
 use super::ui::Ui;
 use anyhow::Context;
@@ -39,13 +40,18 @@ pub fn run(input: Option<&Path>, limits: Limits, plot: &Path, ui: &Ui) -> anyhow
     let name = source.path().and_then(Path::file_name).unwrap_or_default().to_string_lossy().into_owned();
     let chart =
         chart(name, &points).ok_or_else(|| Failure::Usage("a stream of one pass has no curve".into()))?;
-    if has_ending(plot, "svg") {
+    let passes = counted(points.len(), "pass", "passes");
+    let what = if has_ending(plot, "svg") {
         let text = chart.to_svg()?;
-        destination.write(|out| out.write_all(text.as_bytes()))
+        destination.write(|out| out.write_all(text.as_bytes()))?;
+        format!("chart of {passes}")
     } else {
         let image = chart.to_image()?;
-        destination.write(|out| image.write_png(out))
-    }
+        destination.write(|out| image.write_png(out))?;
+        format!("chart of {passes}, {}", pixels_of(&image))
+    };
+    say_written(&destination, &what, ui);
+    Ok(())
 }
 
 fn measure(bytes: &[u8], limits: Limits, [decoding, measuring]: [Part; 2]) -> anyhow::Result<Vec<Point>> {

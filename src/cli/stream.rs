@@ -3,6 +3,7 @@
 use super::bar::Part;
 use super::decoding::Decoding;
 use super::exit::Failure;
+use super::input_file;
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::{DecodeError, DecodeOptions, Decoder, PassInfo};
@@ -50,6 +51,7 @@ impl StreamSource {
         match self {
             Self::Stdin => Ok(Box::new(io::stdin().lock())),
             Self::File(path) => {
+                input_file::check(path).with_context(|| self.name())?;
                 let file = File::open(path).map_err(Failure::Input).with_context(|| self.name())?;
                 Ok(Box::new(file))
             }
@@ -80,6 +82,7 @@ impl StreamSource {
         let mut reader = self.open()?.take(most_bytes.unwrap_or(u64::MAX));
         let mut decoding = Decoding::new(options, level, most_bytes, part);
         let mut piece = vec![0; PIECE_BYTES];
+        let mut is_empty = most_bytes != Some(0);
         while !decoding.decoder.is_complete() {
             let read = match reader.read(&mut piece) {
                 Ok(0) => break,
@@ -87,10 +90,14 @@ impl StreamSource {
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
                 Err(error) => return Err(Failure::Input(error)).with_context(|| self.name()),
             };
+            is_empty = false;
             let taken = decoding.take(&piece[..read], |pass| self.tell(pass, ui));
             if let Err(error) = taken {
                 return Ok(DecodedStream { decoder: decoding.decoder, error: Some(error) });
             }
+        }
+        if is_empty {
+            return Err(Failure::Empty).with_context(|| self.name());
         }
         part.set(1.0);
         Ok(DecodedStream { decoder: decoding.decoder, error: None })

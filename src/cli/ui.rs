@@ -39,6 +39,13 @@ impl Ui {
         self.verbose
     }
 
+    /// What was done, unless nobody wants to know.
+    pub fn say(&self, sentence: &str) {
+        if !self.quiet {
+            self.line("", AnsiColor::White, sentence);
+        }
+    }
+
     pub fn error(&self, sentence: &str) {
         self.line("lwc: ", AnsiColor::Red, sentence);
     }
@@ -65,8 +72,9 @@ impl Ui {
     }
 
     fn line(&self, label: &str, colour: AnsiColor, text: &str) {
+        let is_coloured = self.colour && !label.is_empty();
         let style =
-            if self.colour { Style::new().bold().fg_color(Some(colour.into())) } else { Style::new() };
+            if is_coloured { Style::new().bold().fg_color(Some(colour.into())) } else { Style::new() };
         // If standard error is closed there is nowhere to complain.
         let _ = self.screen.beside(|| writeln!(io::stderr(), "{style}{label}{style:#}{text}"));
     }

@@ -6,6 +6,7 @@ mod report;
 use super::bar::Part;
 use super::exit::Failure;
 use super::input::{read_for_stream, read_terrain};
+use super::input_file::{self, holds_stream};
 use super::output::Destination;
 use super::quantity::counted;
 use super::ui::Ui;
@@ -15,16 +16,19 @@ use args::Encode;
 use lwc::io::{Format, MeshFile};
 use lwc::{EncodeOptions, Encoded, RepairReport};
 use report::Report;
+use std::io;
+use std::path::Path;
 use std::time::Instant;
 
 /// Reads, encodes, verifies, writes, reports.
 pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let destination = args.destination();
+    check_input(&args.input).with_context(|| args.input.display().to_string())?;
     destination.check(Some(&args.input), false)?;
     check_ending(&destination).with_context(|| destination.name())?;
     let start = Instant::now();
     let bar = ui.bar();
-    let verifying = if args.verify { 10.0 } else { 0.0 };
+    let verifying = if args.verify { 30.0 } else { 0.0 };
     let [reading, encoding, verifying] =
         bar.split([("reading", 5.0), ("encoding", 85.0), ("verifying", verifying)]);
     let mut file = match args.terrain.options() {
@@ -50,6 +54,15 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let (file, encoded) = (&file, &encoded);
     let report = Report { args, file, left_out, encoded, destination, read_seconds, encode_seconds };
     report.print(ui)
+}
+
+/// What would otherwise be told of its ending, or of the output beside it.
+fn check_input(path: &Path) -> Result<(), Failure> {
+    input_file::check(path)?;
+    if holds_stream(path) {
+        return Err(Failure::Input(io::Error::other("it is an lwc stream already")));
+    }
+    Ok(())
 }
 
 /// A stream under the ending of a mesh would be taken for one, and often replaces it.

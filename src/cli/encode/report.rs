@@ -24,17 +24,16 @@ pub struct Report<'a> {
 
 impl Report<'_> {
     pub fn print(&self, ui: &Ui) -> anyhow::Result<()> {
-        let to_stdout = self.destination != Destination::Stdout;
-        let mut out: Box<dyn Write> =
-            if to_stdout { Box::new(io::stdout().lock()) } else { Box::new(io::stderr()) };
         if self.args.json {
+            let to_file = self.destination != Destination::Stdout;
+            let out: Box<dyn Write> =
+                if to_file { Box::new(io::stdout().lock()) } else { Box::new(io::stderr()) };
             print_json(out, &self.to_json())?;
-        } else if !ui.is_quiet() && (to_stdout || ui.is_verbose()) {
-            self.print_summary(&mut out)?;
+        } else if self.destination != Destination::Stdout || ui.is_verbose() {
+            ui.say(&self.summary());
             if ui.is_verbose() {
-                passes::print(&mut out, &self.encoded.info, self.num_bytes())?;
+                passes::print(io::stderr(), &self.encoded.info, self.num_bytes())?;
             }
-            out.flush()?;
         }
         Ok(())
     }
@@ -52,30 +51,23 @@ impl Report<'_> {
         Some(self.num_bytes() as f64 / self.input_bytes()? as f64)
     }
 
-    fn print_summary(&self, out: &mut dyn Write) -> io::Result<()> {
-        let (info, bytes) = (&self.encoded.info, self.num_bytes());
+    /// Two lines.
+    fn summary(&self) -> String {
+        let (info, bytes, repair) = (&self.encoded.info, self.num_bytes(), &self.encoded.repair);
         let finest = info.passes().last();
-        let input = self.args.input.display();
-        writeln!(
-            out,
-            "{}: {}, {}, {} on the base mesh, {} bits",
+        let vertices = finest.map_or(0, |p| p.vertices as usize - repair.repeated_vertices);
+        let ratio = self.ratio().map(|r| format!(", {:.1} % of {}", 100.0 * r, self.args.input.display()));
+        format!(
+            "{}: {}, {}, {} on the base mesh, {} bits\n{bytes} bytes, {:.2} bits per vertex{}, {:.2} s{}",
             self.destination.name(),
-            counted(
-                finest.map_or(0, |p| p.vertices as usize - self.encoded.repair.repeated_vertices),
-                "vertex",
-                "vertices"
-            ),
+            counted(vertices, "vertex", "vertices"),
             counted(finest.map_or(0, |p| p.faces as usize), "face", "faces"),
             counted(info.finest_level() as usize, "level", "levels"),
             info.precision(),
-        )?;
-        let ratio = self.ratio().map_or(String::new(), |r| format!(", {:.1} % of {input}", 100.0 * r));
-        let verified = if self.args.verify { ", verified" } else { "" };
-        writeln!(
-            out,
-            "{bytes} bytes, {:.2} bits per vertex{ratio}, {:.2} s{verified}",
             passes::bits_per_vertex(bytes, info),
+            ratio.unwrap_or_default(),
             self.read_seconds + self.encode_seconds,
+            if self.args.verify { ", verified" } else { "" },
         )
     }
 

@@ -7,6 +7,7 @@ mod results;
 
 use super::bar::Part;
 use super::input::read_mesh;
+use super::quantity::counted;
 use super::ui::Ui;
 use anyhow::Context;
 use args::Experiment as Args;
@@ -35,6 +36,9 @@ pub fn run(args: &Args, ui: &Ui) -> anyhow::Result<()> {
     }
     drop(bar);
     ranking::print(&mut io::stdout().lock(), &results)?;
+    let runs = counted(results.runs.len(), "run", "runs");
+    let meshes = counted(results.by_subject().len(), "mesh", "meshes");
+    ui.say(&format!("{}: results.json and results.csv of {runs}, charts of {meshes}", args.out.display()));
     Ok(())
 }
 

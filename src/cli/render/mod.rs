@@ -6,7 +6,8 @@ mod montage;
 use super::bar::{Bar, Part, Vertices};
 use super::exit::Failure;
 use super::input::{in_place, read_mesh};
-use super::output::{Destination, has_ending};
+use super::input_file::is_stream;
+use super::output::{Destination, has_ending, pixels_of, say_written};
 use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete};
 use super::ui::Ui;
 use anyhow::Context;
@@ -24,12 +25,15 @@ pub fn run(args: &Render, ui: &Ui) -> anyhow::Result<()> {
     destination.check(Some(&args.input), false)?;
     let bar = ui.bar();
     let picture = if args.montage { montage::montage(args, &bar)? } else { picture(args, &bar, ui)? };
-    destination.write(|out| picture.write_png(out))
+    destination.write(|out| picture.write_png(out))?;
+    drop(bar);
+    say_written(&destination, &pixels_of(&picture), ui);
+    Ok(())
 }
 
 /// One picture.
 fn picture(args: &Render, bar: &Bar, ui: &Ui) -> anyhow::Result<Image> {
-    let reading = if has_ending(&args.input, "lwc") { "decoding" } else { "reading" };
+    let reading = if is_stream(&args.input) { "decoding" } else { "reading" };
     let (descriptor, evaluating) = match args.color_by {
         Some(ColorBy::Descriptor(descriptor)) => (descriptor.name(), 50.0),
         _ => ("drawing", 0.0),
@@ -75,7 +79,7 @@ fn paint(mesh: &TriMesh, attributes: &Attributes, kind: AttributeKind) -> Result
 
 /// The mesh to show.
 fn read(args: &Render, part: Part, ui: &Ui) -> anyhow::Result<MeshFile> {
-    if !has_ending(&args.input, "lwc") {
+    if !is_stream(&args.input) {
         if args.level.is_some() || args.bytes.is_some() {
             let what = "--level and --bytes are for streams (.lwc)".to_owned();
             return Err(Failure::Usage(what)).with_context(|| args.input.display().to_string());

@@ -3,7 +3,8 @@
 use super::args::Render;
 use crate::cli::bar::{Bar, Part};
 use crate::cli::exit::Failure;
-use crate::cli::output::has_ending;
+use crate::cli::input_file::is_stream;
+use crate::cli::stream::StreamSource;
 use anyhow::Context;
 use lwc::metrics::{CompareOptions, compare};
 use lwc::render::{Camera, Image, Paint, RenderError, render};
@@ -22,11 +23,11 @@ struct Level {
 
 pub(super) fn montage(args: &Render, bar: &Bar) -> anyhow::Result<Image> {
     let name = args.input.display().to_string();
-    if !has_ending(&args.input, "lwc") {
+    if !is_stream(&args.input) {
         let what = "a montage shows the levels of a stream (.lwc)".to_owned();
         return Err(Failure::Usage(what)).context(name);
     }
-    let bytes = std::fs::read(&args.input).map_err(Failure::Input).with_context(|| name.clone())?;
+    let bytes = StreamSource::File(args.input.clone()).read()?;
     let [decoding, drawing] = bar.split([("decoding", 20.0), ("drawing", 80.0)]);
     let levels = decode(&bytes, args, decoding).with_context(|| name.clone())?;
     let finest = levels.last().ok_or(DecodeError::NoMesh).with_context(|| name.clone())?;

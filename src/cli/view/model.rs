@@ -3,6 +3,8 @@
 use super::args::View;
 use crate::cli::exit::Failure;
 use crate::cli::input::read_mesh;
+use crate::cli::input_file::is_stream;
+use crate::cli::stream::StreamSource;
 use crate::cli::ui::Ui;
 use anyhow::Context;
 use lwc::descriptors::{Descriptor, evaluate, mean_edge_length};
@@ -37,12 +39,14 @@ impl Model {
     /// If the file cannot be read, is no stream, or cannot be encoded.
     pub fn open(args: &View, ui: &Ui) -> anyhow::Result<Self> {
         let name = args.input.display().to_string();
-        let is_stream = args.input.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("lwc"));
-        let bytes = if is_stream {
-            std::fs::read(&args.input).map_err(Failure::Input).with_context(|| name.clone())?
+        let bytes = if is_stream(&args.input) {
+            StreamSource::File(args.input.clone()).read()?
         } else {
-            encode(args, ui).with_context(|| name.clone())?
+            encode(args, ui)?
         };
+        if bytes.is_empty() {
+            return Err(Failure::Empty).context(name);
+        }
         if StreamInfo::read(&bytes).with_context(|| name.clone())?.is_none() {
             return Err(Failure::CutTable).with_context(|| name);
         }
@@ -118,7 +122,8 @@ fn encode(args: &View, ui: &Ui) -> anyhow::Result<Vec<u8>> {
     options.descriptor = args.scale.descriptor;
     options.window = args.scale.window.window();
     let progress = |now: lwc::Progress| encoding.set_stage(now.stage, now.fraction);
-    Ok(lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress)?.bytes)
+    let encoded = lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress);
+    Ok(encoded.with_context(|| args.input.display().to_string())?.bytes)
 }
 
 /// Compares every pass with the last one.
