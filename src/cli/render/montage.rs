@@ -6,7 +6,7 @@ use crate::cli::exit::Failure;
 use crate::cli::input_file::is_stream;
 use crate::cli::stream::StreamSource;
 use anyhow::Context;
-use lwc::metrics::{CompareOptions, compare};
+use lwc::metrics::{CompareOptions, compare_with_progress};
 use lwc::render::{Camera, Image, Paint, RenderError, render};
 use lwc::{DecodeError, Decoder, TriMesh};
 
@@ -43,10 +43,12 @@ pub(super) fn montage(args: &Render, bar: &Bar) -> anyhow::Result<Image> {
     let camera = Camera::fit(&finest.mesh, args.picture.view, args.picture.up, width, height);
     let mut cells = Vec::new();
     for (i, level) in shown.iter().enumerate() {
-        drawing.set(i as f64 / shown.len() as f64);
+        let part = drawing.between(i as f64 / shown.len() as f64, (i + 1) as f64 / shown.len() as f64);
+        part.set(0.0);
         let picture = render(&level.mesh, Paint::Plain, &camera, &style)?;
         let options = CompareOptions::new().samples(SAMPLES);
-        let distance = compare(&finest.mesh, &level.mesh, &options).with_context(|| name.clone())?;
+        let distance = compare_with_progress(&finest.mesh, &level.mesh, &options, &|done| part.set(done))
+            .with_context(|| name.clone())?;
         let db = distance.psnr_db();
         let quality = if db.is_finite() { format!("{db:.1} dB") } else { "complete".to_owned() };
         let vertices = grouped(level.mesh.num_vertices() as u64);
