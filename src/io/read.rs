@@ -21,7 +21,8 @@ use std::path::Path;
 /// the folder of `path` or below.
 ///
 /// # Errors
-/// If the file cannot be read, its ending is unknown, it is larger than [`MAX_FILE_BYTES`], or it is damaged.
+/// If the file cannot be read, its ending is unknown, it is larger than [`MAX_FILE_BYTES`](super::MAX_FILE_BYTES), or it is
+/// damaged.
 /// The error names the place in the file and the cause; the caller knows the file's name and puts it in front.
 pub fn read(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
     ReadOptions::default().read(path)

@@ -72,26 +72,24 @@ impl Search<'_> {
 
     /// The file that defines what `path` means in `module`; `None` if it is of another crate.
     fn file_of(&self, module: &str, path: &[String], steps: usize) -> Option<String> {
-        let mut here = module.to_owned();
-        let mut rest = path;
-        match path.first()?.as_str() {
+        let (first, rest) = path.split_first()?;
+        match first.as_str() {
             // Alone they are a value, or say who may use something.
-            "crate" | "self" | "super" if path.len() == 1 => return None,
-            "crate" => here = String::new(),
-            "self" => {}
-            "super" => here = parent(module)?.to_owned(),
-            first => {
+            "crate" | "self" | "super" if rest.is_empty() => None,
+            "crate" => self.walk(String::new(), rest, steps),
+            "self" => self.walk(module.to_owned(), rest, steps),
+            "super" => {
+                let num_up = path.iter().take_while(|name| *name == "super").count();
+                let here = (0..num_up).try_fold(module, |here, _| parent(here))?;
+                self.walk(here.to_owned(), &path[num_up..], steps)
+            }
+            name => {
                 // A child alone may as well be a variable. Other names are of this file, or of other crates.
-                let is_child = self.child(module, first).is_some() && path.len() > 1;
-                let is_ours = is_child || self.import(module, first).is_some();
-                return if is_ours { self.walk(here, path, steps) } else { None };
+                let is_child = self.child(module, name).is_some() && !rest.is_empty();
+                let is_ours = is_child || self.import(module, name).is_some();
+                is_ours.then(|| self.walk(module.to_owned(), path, steps)).flatten()
             }
         }
-        rest = &rest[1..];
-        while let Some(("super", after)) = rest.split_first().map(|(first, after)| (first.as_str(), after)) {
-            (here, rest) = (parent(&here)?.to_owned(), after);
-        }
-        self.walk(here, rest, steps)
     }
 
     /// From module to module along a path, through what they import.
