@@ -1,5 +1,11 @@
 //! What takes long tells how far it is: from 0 to 1, and never back.
-#![cfg(all(feature = "encoder", feature = "experiment", feature = "io", feature = "metrics"))]
+#![cfg(all(
+    feature = "encoder",
+    feature = "experiment",
+    feature = "io",
+    feature = "metrics",
+    feature = "render"
+))]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -11,6 +17,7 @@ use lwc::io::ReadOptions;
 use lwc::mesh::Attributes;
 use lwc::metrics::{CompareOptions, compare, compare_with_progress};
 use lwc::multiresolution::{Decomposition, DetailTransfer, Options, denoised_with_progress};
+use lwc::render::{Camera, Paint, Style, Up, View, render, render_with_progress};
 use lwc::{DecodeOptions, EncodeOptions, Limits, Optimize, TriMesh, encode_with_attributes};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -104,6 +111,18 @@ fn levels_and_details_do() {
     let hear = |done| told.hear(done);
     DetailTransfer::new_with_progress(&stream, coarse.num_vertices(), Limits::default(), &hear).unwrap();
     told.check("details of a stream", 10);
+}
+
+#[test]
+fn drawing_does() {
+    let mesh = ball();
+    let style = Style { size: [160, 120], ..Style::default() };
+    let camera = Camera::fit(&mesh, View::default(), Up::Y, 160, 120);
+    let told = Told::default();
+    let hear = |done| told.hear(done);
+    let picture = render_with_progress(&mesh, Paint::Plain, &camera, &style, &hear).unwrap();
+    assert_eq!(picture.pixel(80, 60), render(&mesh, Paint::Plain, &camera, &style).unwrap().pixel(80, 60));
+    told.check("render", 100);
 }
 
 #[test]

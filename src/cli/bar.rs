@@ -41,6 +41,12 @@ impl Bar {
         parts
     }
 
+    /// Takes it away for good: the result goes to standard output, which may be the same terminal.
+    pub fn hide(&self) {
+        self.drawn.finish_and_clear();
+        self.screen.clear();
+    }
+
     /// Goes to a share of the whole, unless it is further already.
     fn go_to(&self, stage: &'static str, share: f64) {
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
@@ -57,8 +63,7 @@ impl Bar {
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.drawn.finish_and_clear();
-        self.screen.clear();
+        self.hide();
     }
 }
 
@@ -72,6 +77,11 @@ pub struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
+    /// Its name.
+    pub fn stage(&self) -> &'static str {
+        self.stage
+    }
+
     /// Which share of the part is done, 0 to 1.
     pub fn set(&self, fraction: f64) {
         self.set_stage(self.stage, fraction);

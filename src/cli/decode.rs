@@ -68,6 +68,9 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
         (chosen, _) => chosen.unwrap_or(Destination::Stdout),
     };
     writing.set(0.0);
+    if destination == Destination::Stdout {
+        bar.hide();
+    }
     let report = write(&destination, format, &mesh, &attributes)?;
     drop(bar);
     for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {

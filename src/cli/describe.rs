@@ -59,7 +59,10 @@ pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
         .with_context(|| args.input.display().to_string())?;
     ui.detail(&args.input.display().to_string(), &format!("mean edge length {mean_edge}"));
     writing.set(0.0);
-    let what = write(args, &file.mesh, &values, &destination)?;
+    if destination == Destination::Stdout {
+        bar.hide();
+    }
+    let what = write(args, &file.mesh, &values, &destination, writing)?;
     drop(bar);
     say_written(&destination, &what, ui);
     Ok(())
@@ -71,11 +74,12 @@ fn write(
     mesh: &TriMesh,
     values: &[f64],
     destination: &Destination,
+    part: Part,
 ) -> anyhow::Result<String> {
     match Kind::of(destination) {
         Some(Kind::Picture) => {
             let name = args.scale.descriptor.name();
-            let picture = heat_picture(mesh, values, name, &args.heat, &args.picture)?;
+            let picture = heat_picture(mesh, values, name, &args.heat, &args.picture, part)?;
             destination.write(|out| picture.write_png(out))?;
             Ok(pixels_of(&picture))
         }

@@ -11,7 +11,6 @@
 //! size whose sums are added in order.
 
 mod bounds;
-mod count;
 mod crowd;
 mod known;
 mod nearest;
@@ -19,7 +18,7 @@ mod oriented;
 mod sample;
 
 use crate::mesh::TriMesh;
-use count::Count;
+use crate::util::count::Count;
 use crowd::{Crowd, Waiting};
 use glam::DVec3;
 use known::Known;

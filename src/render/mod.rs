@@ -31,7 +31,7 @@ pub use error::RenderError;
 pub use heat::{Heat, with_legend};
 pub use image::Image;
 pub use paint::{CornerPaint, Paint};
-pub use shade::render;
+pub use shade::{render, render_with_progress};
 
 /// How a surface looks.
 #[derive(Clone, Debug, PartialEq)]

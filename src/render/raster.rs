@@ -2,6 +2,7 @@
 
 use super::band::{BAND_ROWS, Band};
 use super::projected::{Drawn, Projected};
+use crate::util::count::Count;
 use rayon::prelude::*;
 use std::collections::HashSet;
 
@@ -19,8 +20,8 @@ pub(super) struct Visible {
 }
 
 impl Visible {
-    /// Draws `triangles` on `width` by `height` samples; of equally near ones the first is seen.
-    pub(super) fn new(triangles: &[Projected], width: usize, height: usize) -> Self {
+    /// Draws `triangles` on `width` by `height` samples; of equally near ones the first is seen. Counts the rows.
+    pub(super) fn new(triangles: &[Projected], width: usize, height: usize, count: &Count) -> Self {
         let mut visible = Self {
             width,
             height,
@@ -31,10 +32,12 @@ impl Visible {
         let bands = visible.triangle.par_chunks_mut(BAND_ROWS * width);
         bands.zip(visible.near.par_chunks_mut(BAND_ROWS * width)).enumerate().for_each(
             |(band, (seen, near))| {
+                let num_rows = seen.len() / width;
                 let mut band = Band::new(band * BAND_ROWS, width, seen, near);
                 for drawn in &order {
                     band.draw(&triangles[drawn.triangle as usize], drawn);
                 }
+                count.add(num_rows);
             },
         );
         visible
@@ -69,6 +72,10 @@ fn drawing_order(triangles: &[Projected], width: usize, height: usize) -> Vec<Dr
 mod tests {
     use super::*;
 
+    fn drawn(triangles: &[Projected], width: usize, height: usize) -> Visible {
+        Visible::new(triangles, width, height, &Count::new(height, &|_| ()))
+    }
+
     fn square(low: f64, high: f64, near: f64) -> [Projected; 2] {
         let p = |x: f64, y: f64| [x, y, near];
         let [a, b, c, d] = [p(low, low), p(high, low), p(high, high), p(low, high)];
@@ -78,7 +85,7 @@ mod tests {
     #[test]
     fn a_square_has_its_samples_and_the_nearer_one_wins() {
         let triangles = [square(10.0, 60.0, 1.0), square(30.0, 50.0, 2.0), square(20.0, 40.0, 0.0)].concat();
-        let visible = Visible::new(&triangles, 100, 90);
+        let visible = drawn(&triangles, 100, 90);
         let count =
             |range: std::ops::Range<u32>| visible.triangle.iter().filter(|t| range.contains(t)).count();
         assert_eq!((count(0..2), count(2..4), count(4..6)), (2500 - 400, 400, 0));
@@ -87,10 +94,10 @@ mod tests {
 
     #[test]
     fn what_lies_outside_is_left_out() {
-        let visible = Visible::new(&square(-20.0, 500.0, 0.0), 40, 70);
+        let visible = drawn(&square(-20.0, 500.0, 0.0), 40, 70);
         assert!(visible.triangle.iter().all(|&t| t != NOTHING));
         let flat = Projected([[0.0, 0.0, 0.0], [30.0, 30.0, 0.0], [60.0, 60.0, 0.0]]);
-        let visible = Visible::new(&[flat, Projected([[-9.0; 3], [-1.0; 3], [-5.0, -2.0, 0.0]])], 40, 70);
+        let visible = drawn(&[flat, Projected([[-9.0; 3], [-1.0; 3], [-5.0, -2.0, 0.0]])], 40, 70);
         assert!(visible.triangle.iter().all(|&t| t == NOTHING));
     }
 
@@ -147,7 +154,7 @@ mod tests {
         triangles.extend_from_within(100..200);
         for triangles in [&triangles[..], &triangles[..4], &triangles[300..310], &triangles[..20].repeat(30)]
         {
-            let visible = Visible::new(triangles, width, height);
+            let visible = drawn(triangles, width, height);
             assert!((visible.triangle, visible.near) == by_brute_force(triangles, width, height));
         }
     }

@@ -3,7 +3,7 @@
 pub mod args;
 mod montage;
 
-use super::bar::{Bar, Part, Vertices};
+use super::bar::{Part, Vertices};
 use super::exit::Failure;
 use super::input::{in_place, read_mesh};
 use super::input_file::is_stream;
@@ -15,7 +15,7 @@ use args::{AttributeKind, ColorBy, HeatArgs, Picture, Render};
 use lwc::descriptors::{evaluate_with_progress, mean_edge_length};
 use lwc::io::MeshFile;
 use lwc::mesh::Attributes;
-use lwc::render::{Camera, CornerPaint, Heat, Image, Paint, RenderError, render, with_legend};
+use lwc::render::{Camera, CornerPaint, Heat, Image, Paint, RenderError, render_with_progress, with_legend};
 use lwc::{DecodeError, DecodeOptions, TriMesh};
 
 /// Reads, draws, writes.
@@ -24,7 +24,10 @@ pub fn run(args: &Render, ui: &Ui) -> anyhow::Result<()> {
     check_ending(&destination).with_context(|| destination.name())?;
     destination.check(Some(&args.input), false)?;
     let bar = ui.bar();
-    let picture = if args.montage { montage::montage(args, &bar)? } else { picture(args, &bar, ui)? };
+    let reading = if is_stream(&args.input) { "decoding" } else { "reading" };
+    let [making, writing] = bar.split([(reading, 90.0), ("writing", 10.0)]);
+    let picture = if args.montage { montage::montage(args, making)? } else { picture(args, making, ui)? };
+    writing.set(0.0);
     destination.write(|out| picture.write_png(out))?;
     drop(bar);
     say_written(&destination, &pixels_of(&picture), ui);
@@ -32,14 +35,13 @@ pub fn run(args: &Render, ui: &Ui) -> anyhow::Result<()> {
 }
 
 /// One picture.
-fn picture(args: &Render, bar: &Bar, ui: &Ui) -> anyhow::Result<Image> {
-    let reading = if is_stream(&args.input) { "decoding" } else { "reading" };
+fn picture(args: &Render, part: Part, ui: &Ui) -> anyhow::Result<Image> {
     let (descriptor, evaluating) = match args.color_by {
         Some(ColorBy::Descriptor(descriptor)) => (descriptor.name(), 50.0),
         _ => ("drawing", 0.0),
     };
     let [reading, evaluating, drawing] =
-        bar.split([(reading, 50.0), (descriptor, evaluating), ("drawing", 20.0)]);
+        part.split([(part.stage(), 50.0), (descriptor, evaluating), ("drawing", args.picture.work())]);
     let MeshFile { mesh, attributes, .. } = read(args, reading, ui)?;
     match args.color_by {
         Some(ColorBy::Descriptor(descriptor)) => {
@@ -47,18 +49,14 @@ fn picture(args: &Render, bar: &Bar, ui: &Ui) -> anyhow::Result<Image> {
             let (window, mean_edge) = (args.window.window(), mean_edge_length(&mesh));
             let progress = |more: usize| vertices.add(more);
             let values = evaluate_with_progress(descriptor, &mesh, &window, mean_edge, &progress);
-            drawing.set(0.0);
-            Ok(heat_picture(&mesh, &values, descriptor.name(), &args.heat, &args.picture)?)
+            let title = descriptor.name();
+            Ok(heat_picture(&mesh, &values, title, &args.heat, &args.picture, drawing)?)
         }
         Some(ColorBy::Attribute(kind)) => {
             let paint = paint(&mesh, &attributes, kind).with_context(|| args.input.display().to_string())?;
-            drawing.set(0.0);
-            Ok(picture_with(&mesh, Paint::Corners(&paint), &args.picture)?)
+            Ok(picture_with(&mesh, Paint::Corners(&paint), &args.picture, drawing)?)
         }
-        None => {
-            drawing.set(0.0);
-            Ok(plain_picture(&mesh, &args.picture)?)
-        }
+        None => Ok(picture_with(&mesh, Paint::Plain, &args.picture, drawing)?),
     }
 }
 
@@ -103,16 +101,10 @@ fn camera(mesh: &TriMesh, picture: &Picture) -> Camera {
     Camera::fit(mesh, picture.view, picture.up, width, height)
 }
 
-/// `mesh` in one colour.
-///
-/// # Errors
-/// If the picture is too large.
-pub fn plain_picture(mesh: &TriMesh, picture: &Picture) -> Result<Image, RenderError> {
-    picture_with(mesh, Paint::Plain, picture)
-}
-
-fn picture_with(mesh: &TriMesh, paint: Paint, picture: &Picture) -> Result<Image, RenderError> {
-    render(mesh, paint, &camera(mesh, picture), &picture.style())
+fn picture_with(mesh: &TriMesh, paint: Paint, picture: &Picture, part: Part) -> Result<Image, RenderError> {
+    part.set(0.0);
+    let progress = |done: f64| part.set(done);
+    render_with_progress(mesh, paint, &camera(mesh, picture), &picture.style(), &progress)
 }
 
 /// `mesh` coloured by `values`, one per vertex, with a legend.
@@ -125,9 +117,9 @@ pub fn heat_picture(
     title: &str,
     heat: &HeatArgs,
     picture: &Picture,
+    part: Part,
 ) -> Result<Image, RenderError> {
     let heat = Heat::new(values, heat.clip);
-    let style = picture.style();
-    let image = render(mesh, Paint::Values(&heat.values), &camera(mesh, picture), &style)?;
-    with_legend(&image, title, &heat, style.background)
+    let image = picture_with(mesh, Paint::Values(&heat.values), picture, part)?;
+    with_legend(&image, title, &heat, picture.background)
 }

@@ -1,7 +1,7 @@
 //! All levels of a stream side by side.
 
 use super::args::Render;
-use crate::cli::bar::{Bar, Part};
+use crate::cli::bar::Part;
 use crate::cli::exit::Failure;
 use crate::cli::input_file::is_stream;
 use crate::cli::stream::StreamSource;
@@ -21,14 +21,14 @@ struct Level {
     end: u64,
 }
 
-pub(super) fn montage(args: &Render, bar: &Bar) -> anyhow::Result<Image> {
+pub(super) fn montage(args: &Render, part: Part) -> anyhow::Result<Image> {
     let name = args.input.display().to_string();
     if !is_stream(&args.input) {
         let what = "a montage shows the levels of a stream (.lwc)".to_owned();
         return Err(Failure::Usage(what)).context(name);
     }
     let bytes = StreamSource::File(args.input.clone()).read()?;
-    let [decoding, drawing] = bar.split([("decoding", 20.0), ("drawing", 80.0)]);
+    let [decoding, drawing] = part.split([("decoding", 20.0), ("drawing", 80.0)]);
     let levels = decode(&bytes, args, decoding).with_context(|| name.clone())?;
     let finest = levels.last().ok_or(DecodeError::NoMesh).with_context(|| name.clone())?;
     let wanted = |level: &&Level| args.levels.is_empty() || args.levels.contains(&level.level);
