@@ -12,7 +12,7 @@ pub(crate) struct BadTable(pub(crate) &'static str);
 
 /// Bits of small numbers that are never larger by much.
 const COUNT_BITS: u32 = 4;
-const PRECISION_BITS: u32 = 2;
+const QUANTIZATION_FIELD_BITS: u32 = 2;
 /// Vertices of a usual base mesh.
 const USUAL_BASE: u32 = 36;
 
@@ -86,8 +86,8 @@ pub(crate) fn read_passes(payload: &[u8], grid: &Grid) -> Result<Vec<Pass>, BadT
         return Err(BadTable("too many passes"));
     }
     let base = read_base(&mut reader).ok_or(SHORT)?;
-    let Action::Base { mut precision } = base.action else { return Err(SHORT) };
-    if !(1..=grid.precision).contains(&precision) {
+    let Action::Base { mut quantization_bits } = base.action else { return Err(SHORT) };
+    if !(1..=grid.quantization_bits).contains(&quantization_bits) {
         return Err(BadTable("the precision of the base mesh is not that of a grid"));
     }
     if base.vertices < 3 || base.faces == 0 {
@@ -99,12 +99,12 @@ pub(crate) fn read_passes(payload: &[u8], grid: &Grid) -> Result<Vec<Pass>, BadT
     let mut passes = vec![base];
     for _ in 0..count {
         let pass = if reader.bit().ok_or(SHORT)? {
-            precision += 1;
+            quantization_bits += 1;
             read_refinement(&mut reader, &outlook).ok_or(SHORT)?
         } else {
             read_split(&mut reader, &outlook)?
         };
-        if precision > grid.precision {
+        if quantization_bits > grid.quantization_bits {
             return Err(BadTable("the passes refine beyond the grid"));
         }
         outlook.learn(&pass).ok_or(TOO_LARGE)?;
@@ -126,11 +126,11 @@ const SHORT: BadTable = BadTable("the table of passes is cut or has a bad number
 const TOO_LARGE: BadTable = BadTable("the mesh is too large");
 
 fn read_base(reader: &mut BitReader) -> Option<Pass> {
-    let precision = reader.number(PRECISION_BITS)?;
+    let quantization_bits = reader.number(QUANTIZATION_FIELD_BITS)?;
     let vertices = reader.near(USUAL_BASE)?;
     let faces = reader.near(expected_faces(vertices))?;
     let bytes = reader.near(vertices.saturating_mul(2))?;
-    Some(Pass { action: Action::Base { precision }, vertices, faces, bytes })
+    Some(Pass { action: Action::Base { quantization_bits }, vertices, faces, bytes })
 }
 
 fn read_split(reader: &mut BitReader, outlook: &Outlook) -> Result<Pass, BadTable> {
@@ -166,8 +166,8 @@ pub(crate) fn write_passes(passes: &[Pass]) -> Vec<u8> {
     let mut outlook = Outlook::after_base(passes[0].vertices);
     for pass in passes {
         match pass.action {
-            Action::Base { precision } => {
-                writer.number(precision, PRECISION_BITS);
+            Action::Base { quantization_bits } => {
+                writer.number(quantization_bits, QUANTIZATION_FIELD_BITS);
                 writer.near(pass.vertices, USUAL_BASE);
                 writer.near(pass.faces, expected_faces(pass.vertices));
                 writer.near(pass.bytes, pass.vertices.saturating_mul(2));
@@ -196,12 +196,12 @@ pub(crate) fn write_passes(passes: &[Pass]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    const GRID: Grid = Grid { precision: 12, origin: [0.5, -1.0, 0.0], side: 3.0 };
+    const GRID: Grid = Grid { quantization_bits: 12, origin: [0.5, -1.0, 0.0], side: 3.0 };
 
     #[test]
     fn tables_return_and_lies_are_refused() {
         let passes = [
-            Pass { action: Action::Base { precision: 11 }, vertices: 4, faces: 4, bytes: 20 },
+            Pass { action: Action::Base { quantization_bits: 11 }, vertices: 4, faces: 4, bytes: 20 },
             Pass { action: Action::Split, vertices: 3, faces: 5, bytes: 9 },
             Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 1 },
             Pass { action: Action::Split, vertices: 70, faces: 140, bytes: 300 },
@@ -218,10 +218,10 @@ mod tests {
         let mut deep = passes.to_vec();
         deep.push(passes[2]);
         assert!(read_passes(&write_passes(&deep), &GRID).is_err(), "thirteen bits on a grid of twelve");
-        for precision in [0, 13, 32, u32::MAX - 1, u32::MAX] {
+        for quantization_bits in [0, 13, 32, u32::MAX - 1, u32::MAX] {
             let mut wide = passes;
-            wide[0].action = Action::Base { precision };
-            assert!(read_passes(&write_passes(&wide), &GRID).is_err(), "a base of {precision} bits");
+            wide[0].action = Action::Base { quantization_bits };
+            assert!(read_passes(&write_passes(&wide), &GRID).is_err(), "a base of {quantization_bits} bits");
         }
     }
 }

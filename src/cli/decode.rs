@@ -33,7 +33,7 @@ pub struct Decode {
     /// Leave the vertices of coarse levels where they are in the finest mesh. By default they are moved a little outwards,
     /// since coarse meshes shrink.
     #[arg(long)]
-    pub uncompensated: bool,
+    pub no_shrinkage_compensation: bool,
     /// Decode the first N bytes only, e.g. 5000 or 20K. Default: all.
     #[arg(short, long, value_name = "N", value_parser = quantity::bytes, allow_negative_numbers = true)]
     pub bytes: Option<u64>,
@@ -55,7 +55,7 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
         destination.check(source.path(), format.is_text())?;
     }
 
-    let options = DecodeOptions::new().limits(args.limits.limits()).compensate(!args.uncompensated);
+    let options = DecodeOptions::new().limits(args.limits.limits()).shrinkage_compensation(!args.no_shrinkage_compensation);
     let bar = ui.bar();
     let [decoding, writing] = bar.split([("decoding", 80.0), ("writing", 20.0)]);
     let wanted = Wanted::new(options, args.level);

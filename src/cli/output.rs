@@ -87,7 +87,7 @@ pub fn say_written(destination: &Destination, what: &str, ui: &Ui) {
 /// `12 vertices, 20 faces`.
 pub fn size_of(mesh: &TriMesh) -> String {
     let vertices = counted(mesh.num_vertices(), "vertex", "vertices");
-    format!("{vertices}, {}", counted(mesh.num_triangles(), "face", "faces"))
+    format!("{vertices}, {}", counted(mesh.num_triangles(), "triangle", "triangles"))
 }
 
 /// `800 × 600 pixels`.

@@ -105,9 +105,9 @@ impl StreamSource {
 
     fn tell(&self, pass: &PassInfo, ui: &Ui) {
         if ui.is_verbose() {
-            let (kind, level, bits) = (pass.kind.name(), pass.level, pass.precision);
-            let (vertices, faces) = (pass.vertices, pass.faces);
-            let what = format!("{kind}: level {level}, {bits} bits, {vertices} vertices, {faces} faces");
+            let (kind, level, bits) = (pass.kind.name(), pass.level, pass.quantization_bits);
+            let (vertices, triangles) = (pass.vertices, pass.triangles);
+            let what = format!("{kind}: level {level}, {bits} bits, {vertices} vertices, {triangles} triangles");
             ui.detail(&self.name(), &what);
         }
     }
@@ -153,5 +153,5 @@ pub fn reached(decoder: &Decoder) -> Option<String> {
     let has_all_passes = decoder.passes_done() == info.passes().len();
     let missing =
         if has_all_passes && !decoder.is_complete() { ", before all that follows the passes" } else { "" };
-    Some(format!("level {level} of {finest} at {} of {} bits{missing}", mesh.precision(), info.precision()))
+    Some(format!("level {level} of {finest} at {} of {} bits{missing}", mesh.quantization_bits(), info.quantization_bits()))
 }

@@ -98,7 +98,7 @@ impl Decoder {
         Self {
             limits: options.limits,
             last_level: options.level.unwrap_or(u32::MAX),
-            compensate: !options.uncompensated,
+            compensate: !options.no_shrinkage_compensation,
             frames: FrameReader::new(),
             head: Head::default(),
             info: None,
@@ -315,7 +315,7 @@ impl Decoder {
         Ok(Step::Finished(Update {
             pass,
             vertices: first_vertex..pass.vertices,
-            new_triangles: changes.first_new_face..pass.faces,
+            new_triangles: changes.first_new_face..pass.triangles,
             rewritten_triangles: changes.rewritten_faces,
         }))
     }
@@ -431,9 +431,9 @@ impl Decoder {
             None => (&mesh.positions[..], &mesh.surface.triangles[..]),
         };
         let compensation = self.compensation_after(pass);
-        let (precision, level) = (pass.precision, pass.level);
+        let (quantization_bits, level) = (pass.quantization_bits, pass.level);
         let (grid, extras) = (&info.grid, &self.extras);
-        Some(LevelMesh { cells, triangles, grid, precision, level, compensation, extras })
+        Some(LevelMesh { cells, triangles, grid, quantization_bits, level, compensation, extras })
     }
 
     /// The mesh so far, with what has arrived of the next pass: vertices whose bytes are missing stay
@@ -448,7 +448,7 @@ impl Decoder {
             return Some(complete.to_tri_mesh());
         };
         let (cells, triangles) = (&mesh.positions[..], &mesh.surface.triangles[..]);
-        Some(LevelMesh { cells, triangles, precision: pass.precision, ..complete }.to_tri_mesh())
+        Some(LevelMesh { cells, triangles, quantization_bits: pass.quantization_bits, ..complete }.to_tri_mesh())
     }
 
     /// Attributes of the surface [`Decoder::mesh`], without gaps: values that have not come yet are guessed from those around.
@@ -493,7 +493,7 @@ impl Decoder {
             return self.to_tri_mesh_with_attributes();
         };
         let (cells, triangles) = (&mesh.positions[..], &mesh.surface.triangles[..]);
-        let cut = LevelMesh { cells, triangles, precision: pass.precision, ..complete };
+        let cut = LevelMesh { cells, triangles, quantization_bits: pass.quantization_bits, ..complete };
         let first = complete.num_vertices();
         let attributes = match &self.attributes {
             Some(attributes) if ASSETS && pass.kind == PassKind::Split => {
@@ -546,7 +546,7 @@ impl Decoder {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DecodeOptions {
     level: Option<u32>,
-    uncompensated: bool,
+    no_shrinkage_compensation: bool,
     limits: Limits,
 }
 
@@ -566,8 +566,8 @@ impl DecodeOptions {
     /// Whether coarse meshes are shown with their vertices a little off their places, so that they shrink less. Default
     /// true: closer to the surface by half a dB to one and a half on scans. Without it the vertices of each level are
     /// some of those of the finest.
-    pub fn compensate(mut self, compensate: bool) -> Self {
-        self.uncompensated = !compensate;
+    pub fn shrinkage_compensation(mut self, is_wanted: bool) -> Self {
+        self.no_shrinkage_compensation = !is_wanted;
         self
     }
 

@@ -82,7 +82,7 @@ pub fn encode_with_attributes(
     }
     let mut loose = trailing::loose_vertices(mesh, options);
     let points = usable().flatten().chain(&loose).map(|&v| mesh.positions()[v as usize]);
-    let grid = quantise::grid_around(points, options.quantization)?;
+    let grid = quantise::grid_around(points, options.quantization_bits)?;
     let mut loose_corners = trailing::loose_corners(mesh, options);
     let once = OnceCell::new();
     let make_signatures = || {
@@ -108,7 +108,7 @@ pub fn encode_with_attributes(
         return Err(EncodeError::TooLarge(surface.corner_of.len()));
     }
     let repair = RepairReport {
-        degenerate_faces: if options.keep_degenerate { 0 } else { mesh.num_triangles() - num_usable },
+        degenerate_triangles: if options.keep_degenerate { 0 } else { mesh.num_triangles() - num_usable },
         isolated_vertices: mesh.num_vertices() - ordered.cells.len() - loose.len(),
         repeated_vertices: source.len() - ordered.cells.len(),
     };
@@ -142,7 +142,7 @@ pub fn encode_with_attributes(
         let tried = if is_one_schedule { &[None] } else { options.steps_tried() };
         for (k, &steps) in tried.iter().enumerate() {
             let steps = options.steps_per_edge.or(steps);
-            let schedule = schedule::plan(&hierarchy, options.quantization, steps);
+            let schedule = schedule::plan(&hierarchy, options.quantization_bits, steps);
             let progress = |now: Progress| tries.tell(i, k, now);
             let new = write::write(&hierarchy, &cells, &quantised, &exact, &points, &schedule, &progress);
             if bytes.is_empty() || new.len() < bytes.len() {

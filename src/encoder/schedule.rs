@@ -12,7 +12,7 @@ pub(super) enum Step {
 
 /// Order of the passes after the base mesh.
 pub(super) struct Schedule {
-    pub(super) base_precision: u32,
+    pub(super) base_bits: u32,
     pub(super) steps: Vec<Step>,
 }
 
@@ -26,17 +26,17 @@ const ROUNDING_SHARE: f64 = 0.25;
 /// With `steps_per_edge` a level needs as many bits as make its mean edge that many grid steps long.
 /// Else it needs as many as keep the error of rounding (a twelfth of the squared step) below
 /// [`ROUNDING_SHARE`] of that of the level's shape.
-pub(super) fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: Option<f64>) -> Schedule {
+pub(super) fn plan(hierarchy: &Hierarchy, quantization_bits: u32, steps_per_edge: Option<f64>) -> Schedule {
     let needed = |level: usize| {
         let hidden = match steps_per_edge {
             Some(steps) => libm::log2((hierarchy.mean_edges[level] / steps).max(1.0)),
             None => 0.5 * libm::log2((12.0 * ROUNDING_SHARE * hierarchy.errors[level]).max(1.0)),
         };
-        precision.saturating_sub(hidden as u32).max(1)
+        quantization_bits.saturating_sub(hidden as u32).max(1)
     };
     let num_levels = hierarchy.records.len();
-    let base_precision = if num_levels > 0 { needed(0) } else { precision };
-    let mut current = base_precision;
+    let base_bits = if num_levels > 0 { needed(0) } else { quantization_bits };
+    let mut current = base_bits;
     let mut steps = Vec::new();
     for level in 1..=num_levels {
         while current < needed(level) {
@@ -45,6 +45,6 @@ pub(super) fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: Option
         }
         steps.push(Step::Split(num_levels - level));
     }
-    steps.extend((current..precision).map(|_| Step::Refine));
-    Schedule { base_precision, steps }
+    steps.extend((current..quantization_bits).map(|_| Step::Refine));
+    Schedule { base_bits, steps }
 }

@@ -45,7 +45,7 @@ pub(super) fn write(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Vec<u8> {
     let (mut writer, mut names) =
-        PassWriter::new(hierarchy, cells, attributes, exact, points, schedule.base_precision);
+        PassWriter::new(hierarchy, cells, attributes, exact, points, schedule.base_bits);
     let mut scout = PatchSearch::new(hierarchy.num_faces, writer.profile.mixing());
     let is_split = |step: &&Step| matches!(step, Step::Split(_));
     let num_first = schedule.steps.iter().take_while(|step| !is_split(step)).count();
@@ -74,7 +74,7 @@ pub(super) fn write(
         if after.is_some() {
             scout.follow(&writer.mesh.surface);
         }
-        let hidden = writer.full_precision - writer.precision - num_refinements as u32;
+        let hidden = writer.full_bits - writer.quantization_bits - num_refinements as u32;
         // Which vertices come next does not depend on how these are coded, only on where they are.
         let finish = || {
             writer.split(record, found_now, &names);
@@ -169,8 +169,8 @@ fn assemble(
 struct PassWriter<'a> {
     cells: &'a [[i32; 3]],
     profile: Profile,
-    full_precision: u32,
-    precision: u32,
+    full_bits: u32,
+    quantization_bits: u32,
     mesh: GridMesh,
     coordinates: CoordinateModels,
     refine: RefineModels,
@@ -195,18 +195,18 @@ impl<'a> PassWriter<'a> {
         attributes: &'a Quantised,
         exact: &Exact<'a>,
         points: &'a [Point],
-        precision: u32,
+        quantization_bits: u32,
     ) -> (Self, Names) {
-        let full_precision = exact.grid.precision;
+        let full_bits = exact.grid.quantization_bits;
         let profile = exact.options.profile_used();
         let mixing = profile.mixing();
-        let hidden = full_precision - precision;
+        let hidden = full_bits - quantization_bits;
         let positions: Vec<[i32; 3]> =
             hierarchy.base_vertices.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)).collect();
         let target = BaseTarget { surface: &hierarchy.base, positions: &positions };
         let (num_vertices, num_faces) = (positions.len(), hierarchy.base.triangles.len());
         let mut coder = RangeEncoder::new();
-        let coded = base::code(&mut coder, num_vertices, num_faces, precision, mixing, Some(&target));
+        let coded = base::code(&mut coder, num_vertices, num_faces, quantization_bits, mixing, Some(&target));
         let coded = expect_sound(coded);
         let faces = coded.corner_source.iter().map(|&c| c / 3);
         let names = Names {
@@ -216,8 +216,8 @@ impl<'a> PassWriter<'a> {
         let mut writer = Self {
             cells,
             profile,
-            full_precision,
-            precision,
+            full_bits,
+            quantization_bits,
             mesh: coded.mesh,
             coordinates: CoordinateModels::new(mixing),
             refine: RefineModels::new(mixing),
@@ -234,9 +234,9 @@ impl<'a> PassWriter<'a> {
         let more_vertices = hierarchy.num_vertices - num_vertices;
         writer.mesh.reserve(more_vertices, hierarchy.num_faces - num_faces);
         let row = Pass {
-            action: Action::Base { precision },
+            action: Action::Base { quantization_bits },
             vertices: num_vertices as u32,
-            faces: num_faces as u32,
+            triangles: num_faces as u32,
             bytes: 0,
         };
         writer.finish_pass(row, num_vertices.max(num_faces), coder.finish(), &names);
@@ -248,7 +248,7 @@ impl<'a> PassWriter<'a> {
         let payload = padded(payload, touched as u64, u64::from(MAX_VERTICES_PER_BYTE));
         row.bytes = payload.len() as u32;
         let glue = self.glue_of_new_vertices(&names.vertex_source);
-        let hidden = self.full_precision - self.precision;
+        let hidden = self.full_bits - self.quantization_bits;
         let is_last = hidden == 0 && self.mesh.surface.triangles.len() == self.num_faces;
         let compensation = if is_last {
             Compensation::NONE
@@ -276,8 +276,8 @@ impl<'a> PassWriter<'a> {
     }
 
     fn refine(&mut self, names: &Names) {
-        self.precision += 1;
-        let hidden = self.full_precision - self.precision;
+        self.quantization_bits += 1;
+        let hidden = self.full_bits - self.quantization_bits;
         let target: Vec<[i32; 3]> =
             names.vertex_source.iter().map(|&v| self.cells[v as usize].map(|c| c >> hidden)).collect();
         let payload = match self.profile {
@@ -301,7 +301,7 @@ impl<'a> PassWriter<'a> {
             }
         };
         debug_assert_eq!(self.mesh.positions, target);
-        let row = Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 0 };
+        let row = Pass { action: Action::Refine, vertices: 0, triangles: 0, bytes: 0 };
         self.finish_pass(row, target.len(), payload, names);
         self.attributes.refine();
     }
@@ -309,16 +309,16 @@ impl<'a> PassWriter<'a> {
     /// Codes where the vertices of `record` are, which have been brought back.
     fn split(&mut self, record: &LevelRecord, found: Found, names: &Names) {
         let Found { mut coder, patches, odd } = found;
-        let (wanted, precision) = (self.wanted(record, &odd), self.precision);
+        let (wanted, quantization_bits) = (self.wanted(record, &odd), self.quantization_bits);
         let (models, mesh) = (&mut self.coordinates, &mut self.mesh);
-        expect_sound(coordinates::code(&mut coder, models, mesh, &patches, precision, Some(&wanted)));
+        expect_sound(coordinates::code(&mut coder, models, mesh, &patches, quantization_bits, Some(&wanted)));
         self.finish_split(&patches, coder.finish(), names);
     }
 
     fn split_in_streams(&mut self, record: &LevelRecord, names: &mut Names, scout: &mut PatchSearch) {
         let mut coder = StreamWriter::new(record.len() as u32);
         let (patches, odd) = scout.find_with(&mut coder, &self.mesh, names, record);
-        let (wanted, limit) = (self.wanted(record, &odd), 1 << self.precision);
+        let (wanted, limit) = (self.wanted(record, &odd), 1 << self.quantization_bits);
         self.restore(record, &patches, &odd, names, |mesh, patches, j, star| {
             let GridMesh { positions, roughness, .. } = mesh;
             let mut known = Located { positions, roughness };
@@ -331,7 +331,7 @@ impl<'a> PassWriter<'a> {
 
     /// Cells of the vertices that the patches bring back.
     fn wanted(&self, record: &LevelRecord, odd: &[u32]) -> Vec<[i32; 3]> {
-        let hidden = self.full_precision - self.precision;
+        let hidden = self.full_bits - self.quantization_bits;
         let sources = odd.iter().map(|&o| record.get(o as usize).vertex);
         sources.map(|v| self.cells[v as usize].map(|c| c >> hidden)).collect()
     }
@@ -363,7 +363,7 @@ impl<'a> PassWriter<'a> {
         let row = Pass {
             action: Action::Split,
             vertices: num_vertices as u32,
-            faces: patches.num_new_faces() as u32,
+            triangles: patches.num_new_faces() as u32,
             bytes: 0,
         };
         self.finish_pass(row, num_vertices, payload, names);

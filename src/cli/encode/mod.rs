@@ -87,12 +87,12 @@ fn encode(file: &MeshFile, args: &Encode, part: Part) -> Result<(Encoded, Encode
         Ok((encoded, options))
     };
     let options = args.options();
-    if !args.lossless || args.quantization.is_some() {
+    if !args.lossless || args.quantization_bits.is_some() {
         return encode(options, part);
     }
     let with = |i: usize| {
         let mut options = options.clone();
-        options.quantization = LOSSLESS_BITS[i];
+        options.quantization_bits = LOSSLESS_BITS[i];
         let place = |i: usize| i as f64 / LOSSLESS_BITS.len() as f64;
         encode(options, part.between(place(i), place(i + 1)))
     };
@@ -126,18 +126,18 @@ fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
             "in one piece: nothing shows before the last byte has come; `--levels 99` keeps levels",
         );
     }
-    let RepairReport { degenerate_faces, isolated_vertices, repeated_vertices } = encoded.repair;
+    let RepairReport { degenerate_triangles, isolated_vertices, repeated_vertices } = encoded.repair;
     if encoded.values_dropped > 0 {
         let values = counted(encoded.values_dropped, "value", "values");
         ui.warn(name, &format!("{values} of attributes left out: not finite"));
     }
-    if degenerate_faces > 0 {
-        let faces = counted(degenerate_faces, "degenerate face", "degenerate faces");
+    if degenerate_triangles > 0 {
+        let faces = counted(degenerate_triangles, "degenerate triangle", "degenerate triangles");
         ui.warn(name, &format!("{faces} dropped"));
     }
     if isolated_vertices > 0 {
         let vertices = counted(isolated_vertices, "vertex", "vertices");
-        ui.warn(name, &format!("{vertices} without faces dropped"));
+        ui.warn(name, &format!("{vertices} without triangles dropped"));
     }
     if repeated_vertices > 0 {
         let vertices = counted(repeated_vertices, "vertex", "vertices");

@@ -23,7 +23,7 @@ pub fn compare(
         return Ok(());
     }
     let found = decoder.attributes();
-    let decoded = decoder.mesh().ok_or("there is no mesh")?.to_cut_mesh();
+    let decoded = decoder.mesh().ok_or("there is no mesh")?.to_manifold_mesh();
     if found.list.len() != attributes.list.len() || found.material_libraries != attributes.material_libraries
     {
         return Err("attributes are missing".into());
@@ -94,14 +94,14 @@ impl<'a> Pair<'a> {
     ) -> Result<Self, String> {
         found.validate(decoded).map_err(|e| format!("{}: {e}", wanted.name))?;
         let kind = |a: &Attribute| {
-            (a.name.clone(), a.semantic, a.domain, a.num_components, a.is_normalized, a.values.scalar_type())
+            (a.name.clone(), a.semantic, a.domain, a.num_components, a.is_normalized, a.values.component_type())
         };
         if kind(wanted) != kind(found) {
             return Err(format!("attribute {} has changed", wanted.name));
         }
         let bits = match wanted.semantic {
             Semantic::Normal => options.normal_bits,
-            Semantic::TexCoord(_) => options.uv_bits,
+            Semantic::TexCoord(_) => options.texcoord_bits,
             Semantic::Color(_) => options.color_bits,
             _ => options.generic_bits,
         };
@@ -114,7 +114,7 @@ impl<'a> Pair<'a> {
         let widest = range.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
         let largest = range.iter().flatten().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
         let steps = f64::from((1_u32 << bits) - 1);
-        let is_integer = wanted.values.scalar_type().is_some_and(lwc::mesh::ScalarType::is_integer);
+        let is_integer = wanted.values.component_type().is_some_and(lwc::mesh::ComponentType::is_integer);
         let is_exact = is_integer && widest <= steps || wanted.values.names().is_some();
         let step = (widest / steps).max(if is_integer { 1.0 } else { 0.0 });
         let step = if matches!(wanted.semantic, Semantic::Color(_)) { step.max(1.0 / steps) } else { step };
@@ -133,7 +133,7 @@ impl<'a> Pair<'a> {
                 (Some(row), None) => !self.is_finite(row),
                 (None, found) => found.is_none(),
             }
-        }) || self.wanted.domain == Domain::Face
+        }) || self.wanted.domain == Domain::Triangle
             && self.wanted.row(t).is_none()
             && self.found.row(other).is_none()
     }

@@ -32,7 +32,7 @@ pub fn verify(
     let check = || {
         let decoder = decode(encoded, part.between(0.0, 0.5))?;
         let expected = Quantised::new(mesh, options, encoded.info.side());
-        compare_surface(&expected, options.quantization, encoded, &decoder)?;
+        compare_surface(&expected, options.quantization_bits, encoded, &decoder)?;
         part.set(0.7);
         let (decoded, found) = decoder.to_tri_mesh_with_attributes().ok_or("there is no mesh")?;
         compare_whole(&kept(mesh, options), &decoded, &expected, options)?;
@@ -63,8 +63,8 @@ fn decode(encoded: &Encoded, part: Part) -> Result<Decoder, String> {
         while let Some(update) = decoder.step().map_err(|e| e.to_string())? {
             let pass = passes.next().ok_or("there are more passes than announced")?;
             let mesh = decoder.mesh().ok_or("there is no mesh after a pass")?;
-            let found = (mesh.num_vertices(), mesh.num_triangles(), mesh.level(), mesh.precision());
-            let expected = (pass.vertices as usize, pass.faces as usize, pass.level, pass.precision);
+            let found = (mesh.num_vertices(), mesh.num_triangles(), mesh.level(), mesh.quantization_bits());
+            let expected = (pass.vertices as usize, pass.triangles as usize, pass.level, pass.quantization_bits);
             if update.pass != *pass || found != expected {
                 let kind = pass.kind.name();
                 return Err(format!("the {kind} pass that ends at byte {} gives another mesh", pass.end));
@@ -83,14 +83,14 @@ fn decode(encoded: &Encoded, part: Part) -> Result<Decoder, String> {
 
 fn compare_surface(
     expected: &Quantised,
-    precision: u32,
+    quantization_bits: u32,
     encoded: &Encoded,
     decoder: &Decoder,
 ) -> Result<(), String> {
     let decoded = decoder.mesh().ok_or("there is no mesh")?;
     let info = &encoded.info;
     let same_grid = info.side() == expected.side && info.origin() == expected.origin;
-    if info.precision() != precision || decoded.precision() != precision || !same_grid {
+    if info.quantization_bits() != quantization_bits || decoded.quantization_bits() != quantization_bits || !same_grid {
         return Err("the grid differs".into());
     }
     let num_vertices = expected.num_vertices + encoded.repair.repeated_vertices;
@@ -212,7 +212,7 @@ impl Quantised {
         let mut quantised = Self {
             origin: low,
             side: if is_close { side } else { longest },
-            steps: ((1_u64 << options.quantization) - 1) as f64,
+            steps: ((1_u64 << options.quantization_bits) - 1) as f64,
             num_vertices: is_used.iter().filter(|&&used| used).count(),
             triangles: Vec::new(),
         };
@@ -270,9 +270,9 @@ mod tests {
         TriMesh::new(positions, triangles).unwrap()
     }
 
-    fn verify(mesh: &TriMesh, precision: u32, encoded: &Encoded) -> Result<(), Failure> {
+    fn verify(mesh: &TriMesh, quantization_bits: u32, encoded: &Encoded) -> Result<(), Failure> {
         let mut options = EncodeOptions::default();
-        options.quantization = precision;
+        options.quantization_bits = quantization_bits;
         verify_with(mesh, &options, encoded)
     }
 
@@ -318,8 +318,8 @@ mod tests {
     fn a_stream_of_another_mesh_is_found_out() {
         let (positions, triangles) = bumpy_grid();
         let right = encoded(&mesh(positions.clone(), triangles.clone()));
-        let fails = |positions: Vec<_>, triangles: Vec<_>, precision, part: &str| {
-            let error = verify(&mesh(positions, triangles), precision, &right).unwrap_err().to_string();
+        let fails = |positions: Vec<_>, triangles: Vec<_>, quantization_bits, part: &str| {
+            let error = verify(&mesh(positions, triangles), quantization_bits, &right).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
         };
         let mut moved = positions.clone();

@@ -9,7 +9,7 @@ use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::tables::Tables;
 use crate::mesh::surface::{NO_CORNER, next, prev};
-use crate::mesh::{Domain, NO_ROW, Semantic, Surface};
+use crate::mesh::{Domain, NO_ENTRY, Semantic, Surface};
 use crate::passes::patch::Patches;
 use crate::passes::work_budget::WorkBudget;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
@@ -98,7 +98,7 @@ enum Wanted<'a> {
 impl<'a> Truth<'a> {
     fn row(&self, element: usize, num_channels: usize) -> Wanted<'a> {
         match self.of[element] {
-            NO_ROW => Wanted::Missing,
+            NO_ENTRY => Wanted::Missing,
             row => Wanted::Row(&self.rows[row as usize * num_channels..][..num_channels]),
         }
     }
@@ -112,8 +112,8 @@ impl Wanted<'_> {
     fn is(&self, rows: &Rows, row: u32) -> bool {
         match self {
             Wanted::Unknown => false,
-            Wanted::Missing => row == NO_ROW,
-            Wanted::Row(wanted) => row != NO_ROW && rows.get(row) == *wanted,
+            Wanted::Missing => row == NO_ENTRY,
+            Wanted::Row(wanted) => row != NO_ENTRY && rows.get(row) == *wanted,
         }
     }
 }
@@ -168,7 +168,7 @@ impl Layer {
         let surface = &mesh.surface;
         let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
         self.rows.resize(num_vertices, num_faces);
-        let by_faces = patches.is_none() && self.rows.domain == Domain::Face;
+        let by_faces = patches.is_none() && self.rows.domain == Domain::Triangle;
         let count = if by_faces { num_faces } else { num_vertices - first };
         let truth = truth.as_ref();
         while *place < count {
@@ -183,10 +183,10 @@ impl Layer {
             match (self.rows.domain, patches) {
                 (Domain::Vertex, _) => self.code_vertex(coder, mesh, vertex, truth, desk)?,
                 (Domain::Corner, _) => self.code_wedges(coder, brought, vertex, truth, desk)?,
-                (Domain::Face, None) => {
+                (Domain::Triangle, None) => {
                     self.code_face(coder, mesh, *place as u32, None, truth, desk)?;
                 }
-                (Domain::Face, Some(patches)) => {
+                (Domain::Triangle, Some(patches)) => {
                     let edges = Star { patches, patch: *place, vertex };
                     self.code_star_faces(coder, mesh, edges, truth, desk)?;
                 }
@@ -275,7 +275,7 @@ impl Layer {
                 return UNKNOWN;
             }
             let [left, right] = [prev(before(i)), next(corners[i])].map(|c| self.rows.of[c as usize]);
-            if (left == NO_ROW) != (right == NO_ROW) { UNKNOWN } else { usize::from(left != right) }
+            if (left == NO_ENTRY) != (right == NO_ENTRY) { UNKNOWN } else { usize::from(left != right) }
         };
         let is_seam = |i: usize| {
             truth.is_some_and(|truth| truth.of[corners[i] as usize] != truth.of[before(i) as usize])
@@ -354,7 +354,7 @@ impl Layer {
             }
         }
         // Until they have rows of their own.
-        desk.exceptions.iter().for_each(|&(corner, _)| self.rows.of[corner as usize] = NO_ROW);
+        desk.exceptions.iter().for_each(|&(corner, _)| self.rows.of[corner as usize] = NO_ENTRY);
         (desk.corners, desk.inherited, desk.polygon) = (corners, inherited, polygon);
     }
 
@@ -405,7 +405,7 @@ impl Layer {
         around.push(of(far), way(far));
         for &c in corners.iter().filter(|&&c| c != own && of(c) == of(own)) {
             for end in [next(c), prev(c)] {
-                if of(end) != NO_ROW && surface.vertex(end) != surface.vertex(corner) {
+                if of(end) != NO_ENTRY && surface.vertex(end) != surface.vertex(corner) {
                     around.tips.push(Known { row: of(end), way: way(end) });
                 }
             }
@@ -521,7 +521,7 @@ impl Layer {
                 _ => 1,
             };
             if self.models.missing.code(coder, context, matches!(wanted, Wanted::Missing)) {
-                return Ok(NO_ROW);
+                return Ok(NO_ENTRY);
             }
         }
         if let Some(row) = self.code_repeated(coder, wanted, is_exception, desk) {
@@ -548,7 +548,7 @@ impl Layer {
         found.clear();
         let around = desk.around.ring.iter().map(|known| known.row);
         let repeatable: &[u32] = if is_exception { &desk.repeatable } else { &[] };
-        for row in around.chain(repeatable.iter().copied().filter(|&row| row != NO_ROW)) {
+        for row in around.chain(repeatable.iter().copied().filter(|&row| row != NO_ENTRY)) {
             match found.iter().position(|&(other, _)| self.rows.are_equal(other, row)) {
                 Some(k) => found[k].1 += 1,
                 // Longer rings tell no more.
