@@ -8,7 +8,7 @@ use common::corpus::corpus;
 use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, ReadError, WriteReport},
-    mesh::{Attribute, Attributes, Domain, NO_ENTRY, ComponentType, Semantic, Values},
+    mesh::{Attribute, Attributes, ComponentType, Domain, NO_ENTRY, Semantic, Values},
 };
 
 fn obj(text: &str) -> Result<MeshFile, ReadError> {

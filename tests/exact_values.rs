@@ -7,7 +7,7 @@ mod common;
 use common::attributed::{all, atlas, colours, flat_normals, materials, nasty, smooth_normals};
 use common::kinds::every_kind;
 use common::{build, sphere};
-use lwc::mesh::{Attribute, Attributes, Domain, ComponentType, Semantic, Values};
+use lwc::mesh::{Attribute, Attributes, ComponentType, Domain, Semantic, Values};
 use lwc::{Decoder, EncodeOptions, Limits, Profile, TriMesh, encode_with_attributes};
 
 fn everything() -> EncodeOptions {

@@ -6,7 +6,7 @@ use base64::Engine;
 use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, ReadError},
-    mesh::{Attribute, Domain, NO_ENTRY, ComponentType, Semantic, Values},
+    mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values},
 };
 use serde_json::{Value, json};
 use std::fs;
@@ -172,7 +172,10 @@ fn seams_are_joined_and_what_has_none_is_of_vertices() {
         assert_eq!(corners(&again.mesh), corners(&file.mesh));
         for name in ["NORMAL", "TEXCOORD_0", "COLOR_0"] {
             assert_eq!(at_corners(&again, name), at_corners(&file, name), "{name}");
-            assert_eq!(named(&again, name).values.component_type(), named(&file, name).values.component_type());
+            assert_eq!(
+                named(&again, name).values.component_type(),
+                named(&file, name).values.component_type()
+            );
         }
     }
 }

@@ -70,8 +70,11 @@ fn lines_of(name: &str, stream: &[u8]) -> String {
             .unwrap();
         if mesh.has_shrinkage_compensation() {
             let checksum = checksum_of_whole(&mesh.to_manifold_mesh());
-            writeln!(lines, "{name} {pass} shown {level} {quantization_bits} {vertices} {faces} {checksum:08x}")
-                .unwrap();
+            writeln!(
+                lines,
+                "{name} {pass} shown {level} {quantization_bits} {vertices} {faces} {checksum:08x}"
+            )
+            .unwrap();
         }
         pass += 1;
     }
@@ -81,7 +84,8 @@ fn lines_of(name: &str, stream: &[u8]) -> String {
         let (level, quantization_bits, whole) = (mesh.level(), mesh.quantization_bits(), mesh.to_tri_mesh());
         let (vertices, faces) = (whole.num_vertices(), whole.num_triangles());
         let checksum = checksum_of_whole(&whole);
-        writeln!(lines, "{name} {pass} whole {level} {quantization_bits} {vertices} {faces} {checksum:08x}").unwrap();
+        writeln!(lines, "{name} {pass} whole {level} {quantization_bits} {vertices} {faces} {checksum:08x}")
+            .unwrap();
     }
     lines
 }
@@ -262,7 +266,7 @@ mod make {
     use super::common::*;
     use lwc::descriptors::Descriptor;
     use lwc::mesh::{
-        Attribute, Domain, GltfMaterials, IDENTITY, Instance, NO_ENTRY, ComponentType, SceneTable, Semantic,
+        Attribute, ComponentType, Domain, GltfMaterials, IDENTITY, Instance, NO_ENTRY, SceneTable, Semantic,
         Values,
     };
     use lwc::{EncodeOptions, Partition, Profile, TriMesh, encode, encode_with_attributes};
@@ -448,7 +452,8 @@ mod make {
                 rows[30..90].fill(NO_ENTRY);
                 uv.indices = Some(rows);
                 let areas = (0..mesh.num_triangles()).map(|t| (t as f64 * 0.1).sin()).collect();
-                let areas = Attribute::new("area", Semantic::Generic, Domain::Triangle, 1, Values::F64(areas));
+                let areas =
+                    Attribute::new("area", Semantic::Generic, Domain::Triangle, 1, Values::F64(areas));
                 attributed(&mesh, vec![attributed::materials(&mesh), areas, uv])
             }),
             ("vertex-normals", {

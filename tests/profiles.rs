@@ -91,8 +91,8 @@ fn max_is_smaller_than_small() {
     for (name, mesh) in
         [("torus", noisy(torus(70, 40), 1, 0.004)), ("grid", noisy(grid(60, 50, bumpy), 2, 0.05))]
     {
-        let [max, small] =
-            [Profile::Max, Profile::Small].map(|profile| stream(&mesh, profile, Partition::WeightedError).len());
+        let [max, small] = [Profile::Max, Profile::Small]
+            .map(|profile| stream(&mesh, profile, Partition::WeightedError).len());
         assert!(max < small, "{name}: {max} and {small} bytes");
     }
 }

@@ -150,7 +150,8 @@ fn every_pass_leaves_a_valid_mesh_that_is_as_announced() {
             let mesh = decoder.mesh().unwrap();
             assert_valid(mesh, &format!("{name}, pass {i}"));
             let found = (mesh.level(), mesh.quantization_bits(), mesh.num_vertices(), mesh.num_triangles());
-            let announced = (pass.level, pass.quantization_bits, pass.vertices as usize, pass.triangles as usize);
+            let announced =
+                (pass.level, pass.quantization_bits, pass.vertices as usize, pass.triangles as usize);
             assert_eq!(found, announced, "{name}, pass {i}");
             let start = end.replace(pass.end).unwrap_or(end_of_pass(pass) - pass.bytes);
             assert_eq!(start + pass.bytes, end_of_pass(pass), "{name}, pass {i}: passes follow each other");

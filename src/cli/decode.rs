@@ -55,7 +55,9 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
         destination.check(source.path(), format.is_text())?;
     }
 
-    let options = DecodeOptions::new().limits(args.limits.limits()).shrinkage_compensation(!args.no_shrinkage_compensation);
+    let options = DecodeOptions::new()
+        .limits(args.limits.limits())
+        .shrinkage_compensation(!args.no_shrinkage_compensation);
     let bar = ui.bar();
     let [decoding, writing] = bar.split([("decoding", 80.0), ("writing", 20.0)]);
     let wanted = Wanted::new(options, args.level);

@@ -79,7 +79,17 @@ pub fn print(mut out: impl Write, info: &StreamInfo, present: u64) -> io::Result
     writeln!(
         out,
         "{:>4}  {:<6} {:>5} {:>4} {:>10} {:>10} {:>6} {:>10} {:>8} {:>11} {:>7}",
-        "pass", "kind", "level", "bits", "vertices", "triangles", "removed %", "bytes", "bits/v", "end", "end %"
+        "pass",
+        "kind",
+        "level",
+        "bits",
+        "vertices",
+        "triangles",
+        "removed %",
+        "bytes",
+        "bits/v",
+        "end",
+        "end %"
     )?;
     let total = info.total_bytes().max(1) as f64;
     for (i, pass) in info.passes().iter().enumerate() {

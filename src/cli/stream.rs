@@ -107,7 +107,8 @@ impl StreamSource {
         if ui.is_verbose() {
             let (kind, level, bits) = (pass.kind.name(), pass.level, pass.quantization_bits);
             let (vertices, triangles) = (pass.vertices, pass.triangles);
-            let what = format!("{kind}: level {level}, {bits} bits, {vertices} vertices, {triangles} triangles");
+            let what =
+                format!("{kind}: level {level}, {bits} bits, {vertices} vertices, {triangles} triangles");
             ui.detail(&self.name(), &what);
         }
     }
@@ -153,5 +154,9 @@ pub fn reached(decoder: &Decoder) -> Option<String> {
     let has_all_passes = decoder.passes_done() == info.passes().len();
     let missing =
         if has_all_passes && !decoder.is_complete() { ", before all that follows the passes" } else { "" };
-    Some(format!("level {level} of {finest} at {} of {} bits{missing}", mesh.quantization_bits(), info.quantization_bits()))
+    Some(format!(
+        "level {level} of {finest} at {} of {} bits{missing}",
+        mesh.quantization_bits(),
+        info.quantization_bits()
+    ))
 }

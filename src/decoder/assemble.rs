@@ -132,7 +132,9 @@ impl Extras {
         let faces = self.triangles(&joined, triangles);
         let positions = match &self.positions {
             Some(positions) => positions.clone(),
-            None => self.of_vertices(&joined, &positions(), |cell| grid.position(cell, grid.quantization_bits)),
+            None => {
+                self.of_vertices(&joined, &positions(), |cell| grid.position(cell, grid.quantization_bits))
+            }
         };
         match &self.order {
             Some(order) => order.apply(&positions, &faces),
@@ -313,8 +315,13 @@ impl Extras {
         let count = counts[0] + counts[1];
         chunk.check_memory(LOOSE_EACH * count)?;
         Limits::check("work", cost::loose(count), chunk.work)?;
-        self.loose =
-            Some(isolated_and_degenerate::code(&mut coder, grid.quantization_bits, num_joined, counts, None)?);
+        self.loose = Some(isolated_and_degenerate::code(
+            &mut coder,
+            grid.quantization_bits,
+            num_joined,
+            counts,
+            None,
+        )?);
         Ok(())
     }
 

@@ -8,7 +8,7 @@ use crate::bitstream::pass_table::{self, BadTable};
 use crate::bitstream::profile::Profile;
 use crate::error::DecodeError;
 use crate::limits::Limits;
-use crate::mesh::{Domain, ComponentType, SceneTable, Semantic};
+use crate::mesh::{ComponentType, Domain, SceneTable, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
 
 /// What a stream says of itself before its first pass.

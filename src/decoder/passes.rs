@@ -43,7 +43,8 @@ impl PassDecoder {
 
     /// Bytes of memory that a pass may take, the buffer of the stream not counted.
     pub(super) fn memory_for(&self, pass: &PassInfo) -> u64 {
-        let base = if let Action::Base { .. } = pass.row.action { 160 * u64::from(pass.triangles) } else { 0 };
+        let base =
+            if let Action::Base { .. } = pass.row.action { 160 * u64::from(pass.triangles) } else { 0 };
         bytes_of_models(self.profile.mixing())
             + base
             + BYTES_PER_VERTEX * u64::from(pass.vertices)

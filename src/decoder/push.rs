@@ -448,7 +448,10 @@ impl Decoder {
             return Some(complete.to_tri_mesh());
         };
         let (cells, triangles) = (&mesh.positions[..], &mesh.surface.triangles[..]);
-        Some(LevelMesh { cells, triangles, quantization_bits: pass.quantization_bits, ..complete }.to_tri_mesh())
+        Some(
+            LevelMesh { cells, triangles, quantization_bits: pass.quantization_bits, ..complete }
+                .to_tri_mesh(),
+        )
     }
 
     /// Attributes of the surface [`Decoder::mesh`], without gaps: values that have not come yet are guessed from those around.

@@ -4,7 +4,7 @@ use super::options::EncodeOptions;
 use crate::bitstream::scene;
 use crate::error::EncodeError;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, Domain, NO_ENTRY, ComponentType, Semantic, TriMesh, Values};
+use crate::mesh::{Attribute, Attributes, ComponentType, Domain, NO_ENTRY, Semantic, TriMesh, Values};
 use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};

@@ -27,8 +27,11 @@ impl Signatures {
             return None;
         }
         let none = |domain: Domain| vec![0; domain.num_elements(mesh)];
-        let mut all =
-            Self { vertices: none(Domain::Vertex), corners: none(Domain::Corner), faces: none(Domain::Triangle) };
+        let mut all = Self {
+            vertices: none(Domain::Vertex),
+            corners: none(Domain::Corner),
+            faces: none(Domain::Triangle),
+        };
         if options.lossless {
             let bits = |p: &[f64; 3]| p.iter().fold(1, |hash, x| mix(hash ^ x.to_bits()));
             all.vertices = mesh.positions().iter().map(bits).collect();

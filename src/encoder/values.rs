@@ -69,7 +69,8 @@ impl<'a> Part<'a> {
     fn known(&self, element: usize) -> Option<&'a [i32]> {
         match self.elements.on_surface.get(element) {
             Some(&[there, _]) => {
-                let row = self.elements.rows.of.get(there as usize).copied().filter(|&row| row != NO_ENTRY)?;
+                let row =
+                    self.elements.rows.of.get(there as usize).copied().filter(|&row| row != NO_ENTRY)?;
                 Some(self.elements.rows.get(row))
             }
             None => self.loose(element - self.elements.on_surface.len()),

@@ -247,7 +247,13 @@ fn attributes_of(mesh: &TriMesh, [which, seams]: [u8; 2], is_lossless: bool) -> 
     }
     if which & 8 != 0 {
         let values = (0..mesh.num_triangles()).map(|t| (mix(t, 5) / every) as i16 & 511).collect();
-        attributes.list.push(Attribute::new("f", Semantic::Generic, Domain::Triangle, 1, Values::I16(values)));
+        attributes.list.push(Attribute::new(
+            "f",
+            Semantic::Generic,
+            Domain::Triangle,
+            1,
+            Values::I16(values),
+        ));
     }
     if which & 16 != 0 && is_lossless {
         let bits = |k: usize| (mix(k / every, 6) as u32).rotate_left(u32::from(which >> 5));
@@ -429,7 +435,10 @@ fn assert_valid(mesh: LevelMesh) {
     let surface = Surface::from_triangles(mesh.triangles().to_vec(), mesh.num_vertices());
     assert!(surface.is_ok(), "{:?}", surface.err());
     let limit = 1 << mesh.quantization_bits();
-    assert!(mesh.quantized_positions().iter().flatten().all(|c| (0..limit).contains(c)), "a cell off the grid");
+    assert!(
+        mesh.quantized_positions().iter().flatten().all(|c| (0..limit).contains(c)),
+        "a cell off the grid"
+    );
 }
 
 // ---- Streams from arbitrary bytes --------------------------------------------------------------

@@ -178,8 +178,16 @@ impl<'a> Grower<'a> {
         if self.around.len() != self.num_vertices {
             return Err(Malformed("the base mesh has fewer vertices than announced"));
         }
-        let Self { target, num_vertices, quantization_bits, mixing, triangles, vertex_source, corner_source, .. } =
-            self;
+        let Self {
+            target,
+            num_vertices,
+            quantization_bits,
+            mixing,
+            triangles,
+            vertex_source,
+            corner_source,
+            ..
+        } = self;
         let surface = Surface::from_triangles(triangles, num_vertices)
             .map_err(|_| Malformed("the base mesh is not a surface"))?;
         let base = Base { mesh: GridMesh { surface, ..GridMesh::default() }, vertex_source, corner_source };

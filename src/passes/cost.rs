@@ -116,7 +116,8 @@ mod tests {
         let grid = Counts { vertices: 40_401, triangles: 80_000 };
         let ear = Pass { action: Action::Split, vertices: 1, triangles: 1, bytes: 12 };
         assert_eq!(pass(&ear, grid, 0), 5 * 80_000 + 2 * 80_002 + 12);
-        let base = Pass { action: Action::Base { quantization_bits: 9 }, vertices: 4, triangles: 4, bytes: 9 };
+        let base =
+            Pass { action: Action::Base { quantization_bits: 9 }, vertices: 4, triangles: 4, bytes: 9 };
         assert_eq!(pass(&base, Counts::default(), 2), (10 + 2 * 6) * 4);
     }
 

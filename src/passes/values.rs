@@ -9,7 +9,7 @@ use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::entropy::context_mixer::PlainBits;
 use crate::entropy::range_coder::BitCoder;
-use crate::mesh::{MAX_COMPONENTS, NO_ENTRY, ComponentType, Values};
+use crate::mesh::{ComponentType, MAX_COMPONENTS, NO_ENTRY, Values};
 use crate::util::bytes::Reader;
 use std::collections::HashMap;
 

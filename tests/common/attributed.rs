@@ -1,7 +1,7 @@
 //! Meshes with attributes.
 
 use super::*;
-use lwc::mesh::{Attribute, Attributes, Domain, NO_ENTRY, ComponentType, Semantic, Values};
+use lwc::mesh::{Attribute, Attributes, ComponentType, Domain, NO_ENTRY, Semantic, Values};
 
 pub fn all(list: Vec<Attribute>) -> Attributes {
     let mut attributes = Attributes::default();
@@ -114,7 +114,13 @@ pub fn torn(mesh: &TriMesh) -> Vec<Attribute> {
 }
 
 /// Numbers of all types for the elements of a mesh: small, large, far apart, and those that are no numbers.
-pub fn nasty(mesh: &TriMesh, domain: Domain, scalar: ComponentType, semantic: Semantic, seed: u64) -> Attribute {
+pub fn nasty(
+    mesh: &TriMesh,
+    domain: Domain,
+    scalar: ComponentType,
+    semantic: Semantic,
+    seed: u64,
+) -> Attribute {
     let mut random = Random(seed);
     let num_components = if semantic == Semantic::Normal { 3 } else { 1 + seed as usize % 4 };
     let mut values = Values::new(scalar);
@@ -123,7 +129,9 @@ pub fn nasty(mesh: &TriMesh, domain: Domain, scalar: ComponentType, semantic: Se
     for k in 0..count * num_components {
         let bits = match (scalar, random.next() % 8) {
             (ComponentType::F32, 0) => u64::from((-0.0_f32).to_bits()),
-            (ComponentType::F32, 1) => u64::from(f32::from_bits(random.next() as u32 & 0x007f_ffff).to_bits()),
+            (ComponentType::F32, 1) => {
+                u64::from(f32::from_bits(random.next() as u32 & 0x007f_ffff).to_bits())
+            }
             (ComponentType::F32, 2) if has_no_numbers => 0x7fc0_0001 + random.next() % 9,
             (ComponentType::F32, 3) if has_no_numbers => u64::from(f32::NEG_INFINITY.to_bits()),
             (ComponentType::F32, 4) => u64::from((0.001 * (k % 1000) as f32).to_bits()),

@@ -97,7 +97,13 @@ pub fn assert_round_trip(mesh: &TriMesh, options: &EncodeOptions, what: &str) ->
 
 /// The finest mesh of the stream holds every usable triangle of `mesh`, and nothing else.
 #[track_caller]
-pub fn assert_exact(mesh: &TriMesh, quantization_bits: u32, stream: &[u8], report: &RepairReport, what: &str) {
+pub fn assert_exact(
+    mesh: &TriMesh,
+    quantization_bits: u32,
+    stream: &[u8],
+    report: &RepairReport,
+    what: &str,
+) {
     let mut decoder = Decoder::new(Limits::default());
     if let Err(error) = decoder.push(stream) {
         panic!("{what}: {error}");

@@ -94,7 +94,14 @@ impl<'a> Pair<'a> {
     ) -> Result<Self, String> {
         found.validate(decoded).map_err(|e| format!("{}: {e}", wanted.name))?;
         let kind = |a: &Attribute| {
-            (a.name.clone(), a.semantic, a.domain, a.num_components, a.is_normalized, a.values.component_type())
+            (
+                a.name.clone(),
+                a.semantic,
+                a.domain,
+                a.num_components,
+                a.is_normalized,
+                a.values.component_type(),
+            )
         };
         if kind(wanted) != kind(found) {
             return Err(format!("attribute {} has changed", wanted.name));

@@ -64,7 +64,8 @@ fn decode(encoded: &Encoded, part: Part) -> Result<Decoder, String> {
             let pass = passes.next().ok_or("there are more passes than announced")?;
             let mesh = decoder.mesh().ok_or("there is no mesh after a pass")?;
             let found = (mesh.num_vertices(), mesh.num_triangles(), mesh.level(), mesh.quantization_bits());
-            let expected = (pass.vertices as usize, pass.triangles as usize, pass.level, pass.quantization_bits);
+            let expected =
+                (pass.vertices as usize, pass.triangles as usize, pass.level, pass.quantization_bits);
             if update.pass != *pass || found != expected {
                 let kind = pass.kind.name();
                 return Err(format!("the {kind} pass that ends at byte {} gives another mesh", pass.end));
@@ -90,7 +91,10 @@ fn compare_surface(
     let decoded = decoder.mesh().ok_or("there is no mesh")?;
     let info = &encoded.info;
     let same_grid = info.side() == expected.side && info.origin() == expected.origin;
-    if info.quantization_bits() != quantization_bits || decoded.quantization_bits() != quantization_bits || !same_grid {
+    if info.quantization_bits() != quantization_bits
+        || decoded.quantization_bits() != quantization_bits
+        || !same_grid
+    {
         return Err("the grid differs".into());
     }
     let num_vertices = expected.num_vertices + encoded.repair.repeated_vertices;
@@ -319,7 +323,8 @@ mod tests {
         let (positions, triangles) = bumpy_grid();
         let right = encoded(&mesh(positions.clone(), triangles.clone()));
         let fails = |positions: Vec<_>, triangles: Vec<_>, quantization_bits, part: &str| {
-            let error = verify(&mesh(positions, triangles), quantization_bits, &right).unwrap_err().to_string();
+            let error =
+                verify(&mesh(positions, triangles), quantization_bits, &right).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
         };
         let mut moved = positions.clone();

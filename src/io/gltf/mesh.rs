@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     io::{MeshFile, Place, ReadError, ReadReport, builder::MeshBuilder},
-    mesh::{Attribute, Domain, NO_ENTRY, ComponentType, Semantic, Values},
+    mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values},
 };
 use std::collections::{BTreeMap, HashMap};
 

@@ -3,7 +3,9 @@
 use super::instances::Nodes;
 use crate::{
     io::{Scene, WriteError, WriteReport, texture::oriented},
-    mesh::{Attribute, Attributes, Domain, GltfMaterials, NO_ENTRY, ComponentType, Semantic, TriMesh, Values},
+    mesh::{
+        Attribute, Attributes, ComponentType, Domain, GltfMaterials, NO_ENTRY, Semantic, TriMesh, Values,
+    },
 };
 use base64::Engine;
 use serde_json::{Map, Value, json};
@@ -224,8 +226,9 @@ impl Split {
         let row = |row: Option<usize>| row.map_or(NO_ENTRY, |row| row as u32);
         if !has_corners {
             split.sources = (0..mesh.num_vertices() as u32).collect();
-            let rows =
-                |v: &u32| columns.iter().map(move |c| row(c.attribute.entry(*v as usize))).collect::<Vec<_>>();
+            let rows = |v: &u32| {
+                columns.iter().map(move |c| row(c.attribute.entry(*v as usize))).collect::<Vec<_>>()
+            };
             split.rows = split.sources.iter().flat_map(rows).collect();
             split.triangles = mesh.triangles().to_vec();
             return Ok(split);

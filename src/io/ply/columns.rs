@@ -1,7 +1,7 @@
 //! Which properties of an element make an attribute, and under which names one is written.
 
 use super::header::{Element, Property};
-use crate::mesh::{Attribute, Domain, ComponentType, Semantic, Values};
+use crate::mesh::{Attribute, ComponentType, Domain, Semantic, Values};
 
 /// Names of properties that belong together if they follow each other and have one type.
 const GROUPS: [(&[&str], Kind); 9] = [

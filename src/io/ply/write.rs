@@ -3,7 +3,7 @@
 use super::columns::{property_names, scalar_name};
 use crate::{
     io::{WriteReport, texture::oriented},
-    mesh::{Attribute, Attributes, Domain, ComponentType, Semantic, TriMesh, Values},
+    mesh::{Attribute, Attributes, ComponentType, Domain, Semantic, TriMesh, Values},
 };
 use std::{
     borrow::Cow,

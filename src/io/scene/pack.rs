@@ -179,7 +179,8 @@ fn selected(attribute: &Attribute, elements: impl Iterator<Item = usize>) -> Opt
             next
         })
     };
-    let rows: Vec<u32> = elements.map(|element| attribute.entry(element).map_or(NO_ENTRY, &mut copy)).collect();
+    let rows: Vec<u32> =
+        elements.map(|element| attribute.entry(element).map_or(NO_ENTRY, &mut copy)).collect();
     let is_plain = rows.iter().zip(0..).all(|(&row, k)| row == k) && rows.len() == row_of.len();
     let indices = if is_plain { None } else { Some(rows) };
     (!row_of.is_empty()).then(|| Attribute { values, indices, ..attribute.clone() })

@@ -187,7 +187,9 @@ impl Attribute {
     pub fn entry(&self, element: usize) -> Option<usize> {
         match &self.indices {
             None => Some(element).filter(|&entry| entry < self.num_entries()),
-            Some(indices) => indices.get(element).filter(|&&entry| entry != NO_ENTRY).map(|&entry| entry as usize),
+            Some(indices) => {
+                indices.get(element).filter(|&&entry| entry != NO_ENTRY).map(|&entry| entry as usize)
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! What a stream says of its attributes before it has any values (`format/SPEC.md`, section 4.5).
 
 use super::octahedron::Octahedron;
-use crate::mesh::{Domain, MAX_COMPONENTS, ComponentType, Semantic, Values};
+use crate::mesh::{ComponentType, Domain, MAX_COMPONENTS, Semantic, Values};
 use crate::util::budget::Budget;
 use crate::util::bytes::Reader;
 #[cfg(any(feature = "encoder", test))]
@@ -320,7 +320,14 @@ mod tests {
         let numbers = Coding::Table { rows: Values::I16(vec![-1, 7, 300, 4]) };
         Declarations {
             list: vec![
-                declaration("vt", Semantic::TexCoord(3), Domain::Corner, Some(ComponentType::F32), 2, uniform),
+                declaration(
+                    "vt",
+                    Semantic::TexCoord(3),
+                    Domain::Corner,
+                    Some(ComponentType::F32),
+                    2,
+                    uniform,
+                ),
                 declaration(
                     "n",
                     Semantic::Normal,
