@@ -2,8 +2,8 @@
 
 mod cli;
 
-use clap::Parser;
-use cli::args::{Args, Command};
+use clap::{CommandFactory, Parser};
+use cli::program::{Args, Command};
 use cli::ui::Ui;
 use std::process::ExitCode;
 
@@ -31,7 +31,7 @@ fn dispatch(args: &Args, ui: &Ui) -> anyhow::Result<()> {
         Command::Filter(args) => cli::filter::run(args, ui),
         Command::Edit(args) => cli::edit::run(args, ui),
         Command::View(args) => cli::view::run(args, ui),
-        Command::Completions(args) => cli::completions::run(args),
-        Command::Man(args) => cli::man::run(args, ui),
+        Command::Completions(args) => cli::completions::run(args, Args::command()),
+        Command::Man(args) => cli::man::run(args, Args::command(), ui),
     }
 }

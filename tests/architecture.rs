@@ -1,6 +1,10 @@
-//! The rooms of `src/` import in one direction only, and each no more than `docs/architecture.md` says.
+//! The rooms of `src/` import in one direction only, and each no more than `docs/architecture.md` says. So do the files
+//! within a room.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
+mod file_graph;
+
+use file_graph::FileGraph;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -152,6 +156,54 @@ fn rooms_import_what_the_table_allows_and_all_of_it() {
     assert!(num_imports > 200, "only {num_imports} imports found");
     assert!(unused.is_empty(), "allowed, but imported nowhere: {unused:?}");
     assert!(empty.is_empty(), "rooms without files: {empty:?}");
+}
+
+/// `io/ply/mod.rs` → `io::ply`, `lib.rs` → ``.
+fn module_path(file: &Path) -> String {
+    let path = file.with_extension("");
+    let names: Vec<&str> = path.iter().map(|name| name.to_str().unwrap()).collect();
+    let names = names.strip_suffix(&["mod"]).unwrap_or(&names);
+    if names == ["lib"] { String::new() } else { names.join("::") }
+}
+
+/// A file that uses another is not used by it, nor by what that one uses. A parent and its children are no exception:
+/// what is in `mod.rs` is not for the children, unless `mod.rs` does no more than declare and re-export them.
+#[test]
+fn no_files_import_each_other() {
+    let files: Vec<(String, String)> =
+        sources().into_iter().map(|(_, path, code)| (module_path(&path), code)).collect();
+    let graph = FileGraph::new(&files);
+    let num_uses: usize = graph.uses.values().map(BTreeSet::len).sum();
+    assert!(num_uses > 800, "only {num_uses} uses found");
+    assert_eq!(graph.circles(), Vec::<Vec<String>>::new(), "files that import each other");
+}
+
+/// What the test above finds, on a crate of a few lines.
+#[test]
+fn circles_of_files_are_found() {
+    let circles = |files: &[(&str, &str)]| {
+        let files: Vec<_> = files.iter().map(|(m, code)| ((*m).to_owned(), (*code).to_owned())).collect();
+        FileGraph::new(&files).circles()
+    };
+    let lib = ("", "mod a; mod b; mod room; pub use a::A;");
+    let a = ("a", "use crate::room::{self, Child as C}; pub struct A(C);");
+    let b = ("b", "pub fn b() -> usize { std::mem::size_of::<crate::A>() }");
+    let room = ("room", "mod child;\nmod other;\npub(crate) use child::Child;\npub(crate) fn f() {}");
+    let child = ("room::child", "use super::other; pub(crate) struct Child(other::Other);");
+    let other = ("room::other", "pub(super) struct Other;\n#[cfg(test)]\nmod tests { use crate::a::A; }");
+    assert_eq!(circles(&[lib, a, b, room, child, other]), Vec::<Vec<String>>::new(), "a re-export is no use");
+
+    // Three files, one behind the other: through a re-export, an import of the parent, and a path in the code.
+    let uses_b = ("room::other", "pub(super) struct Other; fn f() { crate::b::b() }");
+    assert_eq!(circles(&[lib, a, b, room, child, uses_b]), [["a", "b", "room::child", "room::other"]]);
+    // A child that uses what its parent defines, and a parent that uses the child.
+    let uses_parent = ("room::other", "pub(super) struct Other; fn g() { super::f() }");
+    assert_eq!(circles(&[lib, a, b, room, child, uses_parent]), Vec::<Vec<String>>::new());
+    let parent = ("room", "mod child;\nmod other;\npub(crate) use child::Child;\nfn f() { child::new() }");
+    assert_eq!(circles(&[lib, a, b, parent, child, uses_parent]), [["room", "room::child", "room::other"]]);
+    let passes_on_and_uses = ("room", "mod child; pub use child::Child; fn f(_: Child) {}");
+    let uses_it = ("room::child", "pub struct Child; fn g(child: Child) { super::f(child) }");
+    assert_eq!(circles(&[("", "mod room;"), passes_on_and_uses, uses_it]), [["room", "room::child"]]);
 }
 
 /// The page names files and functions: they are there.

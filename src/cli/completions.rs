@@ -1,8 +1,7 @@
 //! `lwc completions`: what a shell needs to complete the arguments of the program.
 
-use super::args::Args;
 use super::output::Destination;
-use clap::CommandFactory;
+use clap::Command;
 use clap_complete::Shell;
 
 /// Print a script that completes commands and options in a shell.
@@ -21,9 +20,9 @@ pub struct Completions {
 }
 
 /// Writes the script to standard output.
-pub fn run(args: &Completions) -> anyhow::Result<()> {
+pub fn run(args: &Completions, mut program: Command) -> anyhow::Result<()> {
     // The generator panics if it cannot write, which it always can to memory.
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Args::command(), "lwc", &mut script);
+    clap_complete::generate(args.shell, &mut program, "lwc", &mut script);
     Destination::Stdout.write(|out| out.write_all(&script))
 }

@@ -1,69 +1,116 @@
 //! `lwc decode`: a stream, or the beginning of one, becomes a mesh file.
 
-use super::args::Decode;
+use super::args::LimitArgs;
 use super::exit::Failure;
-use super::input::{DecodedStream, StreamSource, note_if_incomplete, reached};
-use super::output::{Destination, with_ending};
-use super::quantity::counted;
+use super::output::{Destination, say_written, size_of, with_ending};
+use super::quantity;
+use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, reached};
 use super::ui::Ui;
 use anyhow::Context;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lwc::io::{Format, Scene, WriteError, WriteReport};
 use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+/// Decode a stream, or as much of it as there is.
+///
+/// A stream that ends early gives a coarser mesh, with a note on standard error.
+#[derive(Debug, clap::Args)]
+pub struct Decode {
+    /// Stream to decode; standard input if it is `-` or missing.
+    #[arg(value_name = "FILE.lwc")]
+    pub input: Option<PathBuf>,
+    /// Mesh to write, `-` for standard output. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as
+    /// .obj.zst. Default, in the folder of model.lwc: model.level5.obj with `--level 5`, model.decoded.obj without.
+    ///
+    /// A file that exists is replaced once the new one is complete; the input is never replaced.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Stop at this level; 0 is the base mesh. Default: the finest.
+    #[arg(short, long, value_name = "K", allow_negative_numbers = true)]
+    pub level: Option<u32>,
+    /// Leave the vertices of coarse levels where they are in the finest mesh. By default they are moved a little outwards,
+    /// since coarse meshes shrink.
+    #[arg(long)]
+    pub no_shrinkage_compensation: bool,
+    /// Decode the first N bytes only, e.g. 5000 or 20K. Default: all.
+    #[arg(short, long, value_name = "N", value_parser = quantity::bytes, allow_negative_numbers = true)]
+    pub bytes: Option<u64>,
+    /// Format for standard output and for the default file name. Default: obj.
+    #[arg(long, value_name = "FORMAT", value_parser = format_parser())]
+    pub format: Option<Format>,
+    /// Write the finest intact mesh of a damaged stream, and succeed with a warning.
+    #[arg(long)]
+    pub salvage: bool,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
 
 /// Reads and decodes at once, writes, reports.
 pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let source = StreamSource::new(args.input.as_deref())?;
-    let (destination, format) = destination(args, source.path())?;
-    destination.check(source.path(), format.is_text())?;
+    let (chosen, format) = destination(args, source.path())?;
+    if let Some(destination) = &chosen {
+        destination.check(source.path(), format.is_text())?;
+    }
 
-    let mut options = DecodeOptions::new()
+    let options = DecodeOptions::new()
         .limits(args.limits.limits())
         .shrinkage_compensation(!args.no_shrinkage_compensation);
-    if let Some(level) = args.level {
-        options = options.level(level);
-    }
-    let DecodedStream { decoder, error } = source.decode(args.bytes, options, ui)?;
+    let bar = ui.bar();
+    let [decoding, writing] = bar.split([("decoding", 80.0), ("writing", 20.0)]);
+    let wanted = Wanted::new(options, args.level);
+    let DecodedStream { decoder, error } = source.decode(args.bytes, wanted, decoding, ui)?;
     let sound = sound_mesh(&decoder, error, args, &source.name(), ui);
     let (mesh, attributes) = sound.with_context(|| source.name())?;
     note_what_is_missing(&decoder, args, &source.name(), ui);
+    let destination = match (chosen, source.path()) {
+        (None, Some(stream)) => beside(stream, args, &decoder, format)?,
+        (chosen, _) => chosen.unwrap_or(Destination::Stdout),
+    };
+    writing.set(0.0);
+    if destination == Destination::Stdout {
+        bar.hide();
+    }
     let report = write(&destination, format, &mesh, &attributes)?;
+    drop(bar);
     for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {
         if !names.is_empty() {
             ui.warn(&destination.name(), &format!("{what}: {}", names.join(", ")));
         }
     }
 
-    if !ui.is_quiet() && destination != Destination::Stdout {
-        let name = destination.name();
-        let vertices = counted(mesh.num_vertices(), "vertex", "vertices");
-        let faces = counted(mesh.num_triangles(), "triangle", "triangles");
-        let how_far = reached(&decoder).unwrap_or_default();
-        writeln!(io::stdout(), "{name}: {vertices}, {faces}, {how_far}")?;
-    }
+    let how_far = reached(&decoder).unwrap_or_default();
+    say_written(&destination, &format!("{}, {how_far}", size_of(&mesh)), ui);
     Ok(())
 }
 
-/// Where the mesh goes, and as what.
-fn destination(args: &Decode, source: Option<&Path>) -> Result<(Destination, Format), anyhow::Error> {
+/// Where the mesh goes, if that is said, and as what.
+fn destination(args: &Decode, source: Option<&Path>) -> anyhow::Result<(Option<Destination>, Format)> {
     let usage = |what: &str| anyhow::Error::from(Failure::Usage(what.into()));
     let Some(output) = &args.output else {
-        let source = source.ok_or_else(|| usage("a stream from standard input needs -o FILE, or -o -"))?;
-        let format = args.format.unwrap_or(Format::Obj);
-        return Ok((Destination::File(default_output(source, args.level, format)), format));
+        source.ok_or_else(|| usage("a stream from standard input needs -o FILE, or -o -"))?;
+        return Ok((None, args.format.unwrap_or(Format::Obj)));
     };
     let destination = Destination::new(output.clone());
     if destination == Destination::Stdout {
-        return Ok((destination, args.format.unwrap_or(Format::Obj)));
+        return Ok((Some(destination), args.format.unwrap_or(Format::Obj)));
     }
     let by_ending = Format::from_path(output).filter(|format| format.is_written());
     let by_ending = by_ending.ok_or(WriteError::UnknownEnding).with_context(|| destination.name())?;
     if args.format.is_some_and(|format| format != by_ending) {
         return Err(usage("--format differs from the ending")).with_context(|| destination.name());
     }
-    Ok((destination, by_ending))
+    Ok((Some(destination), by_ending))
+}
+
+/// The usual file in the folder of the stream. If a level is asked for, its name says which one is there.
+fn beside(stream: &Path, args: &Decode, decoder: &Decoder, format: Format) -> anyhow::Result<Destination> {
+    let level = args.level.and_then(|_| decoder.mesh()).map(|mesh| mesh.level());
+    let destination = Destination::File(default_output(stream, level, format));
+    destination.check(Some(stream), format.is_text())?;
+    Ok(destination)
 }
 
 /// `model.lwc` → `model.level5.obj` or `model.decoded.obj`: never the name of the model itself.
@@ -125,6 +172,12 @@ fn write(
         Ok::<(), WriteError>(())
     })?;
     Ok(report)
+}
+
+fn format_parser() -> impl TypedValueParser<Value = Format> {
+    let written = || Format::ALL.iter().copied().filter(|format| format.is_written());
+    PossibleValuesParser::new(written().map(Format::extension))
+        .try_map(move |name| written().find(|f| f.extension() == name).ok_or("unknown format"))
 }
 
 #[cfg(test)]

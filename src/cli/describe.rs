@@ -1,17 +1,46 @@
 //! `lwc describe`: a descriptor at every vertex, as numbers or colours.
 
-use super::args::Describe;
+use super::args::{Reading, Scale};
+use super::bar::{Part, Vertices};
 use super::exit::Failure;
 use super::input::read_mesh;
-use super::output::Destination;
-use super::render::{has_ending, heat_picture};
+use super::output::{Destination, has_ending, pixels_of, say_written, size_of};
+use super::quantity::counted;
+use super::render::args::{HeatArgs, Picture};
+use super::render::heat_picture;
 use super::ui::Ui;
 use anyhow::Context;
-use lwc::descriptors::{Features, evaluate_with_features, evaluate_with_progress, mean_edge_length};
+use lwc::TriMesh;
+use lwc::descriptors::{
+    Features, FeaturesError, evaluate_with_features, evaluate_with_progress, mean_edge_length,
+};
 use lwc::io::MeshFile;
 use lwc::render::{Heat, sequential};
 use std::io::{self, Write};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::path::PathBuf;
+
+/// Evaluate a descriptor at every vertex of a mesh.
+///
+/// As CSV: the header `vertex,value` and one line per vertex, in the order of the file, with all digits.
+/// As PNG: a picture coloured by the values, with a legend. As PLY: the mesh with the same colours at its
+/// vertices. Vertices without faces have the value 0.
+#[derive(Debug, clap::Args)]
+pub struct Describe {
+    /// Mesh to describe.
+    #[arg(value_name = "MESH")]
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub scale: Scale,
+    /// Table (.csv), picture (.png) or coloured mesh (.ply) to write, `-` for a table on standard output.
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub heat: HeatArgs,
+    #[command(flatten)]
+    pub reading: Reading,
+    #[command(flatten)]
+    pub picture: Picture,
+}
 
 /// Reads, evaluates, writes.
 pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
@@ -20,41 +49,65 @@ pub fn run(args: &Describe, ui: &Ui) -> anyhow::Result<()> {
     let is_text = matches!(Kind::of(&destination), Some(Kind::Table));
     destination.check(Some(&args.input), is_text)?;
 
-    let MeshFile { mesh, attributes, .. } = read_mesh(&args.input, &args.reading, ui)?;
-    let choices = &args.scale.descriptor_attributes;
-    let mean_edge = mean_edge_length(&mesh);
-    let values = {
-        let bar = ui.bar(args.scale.descriptor.name());
-        let done = AtomicUsize::new(0);
-        let progress = |more: usize| {
-            let done = done.fetch_add(more, Ordering::Relaxed) + more;
-            bar.set(done as f64 / mesh.num_vertices().max(1) as f64);
-        };
-        let (descriptor, window) = (args.scale.descriptor, args.scale.window.window());
-        if choices.is_empty() {
-            evaluate_with_progress(descriptor, &mesh, &window, mean_edge, &progress)
-        } else {
-            Features::choose(&mesh, &attributes, choices)
-                .and_then(|features| {
-                    evaluate_with_features(descriptor, &mesh, &features, &window, mean_edge, &progress)
-                })
-                .with_context(|| args.input.display().to_string())?
-        }
-    };
+    let bar = ui.bar();
+    let descriptor = args.scale.descriptor.name();
+    let [reading, evaluating, writing] =
+        bar.split([("reading", 30.0), (descriptor, 60.0), ("writing", 10.0)]);
+    let file = read_mesh(&args.input, &args.reading, reading, ui)?;
+    let mean_edge = mean_edge_length(&file.mesh);
+    let values = evaluate(&file, &args.scale, mean_edge, evaluating)
+        .with_context(|| args.input.display().to_string())?;
     ui.detail(&args.input.display().to_string(), &format!("mean edge length {mean_edge}"));
-    match Kind::of(&destination) {
+    writing.set(0.0);
+    if destination == Destination::Stdout {
+        bar.hide();
+    }
+    let what = write(args, &file.mesh, &values, &destination, writing)?;
+    drop(bar);
+    say_written(&destination, &what, ui);
+    Ok(())
+}
+
+/// Writes what the ending says, and returns what that is.
+fn write(
+    args: &Describe,
+    mesh: &TriMesh,
+    values: &[f64],
+    destination: &Destination,
+    part: Part,
+) -> anyhow::Result<String> {
+    match Kind::of(destination) {
         Some(Kind::Picture) => {
-            let picture =
-                heat_picture(&mesh, &values, args.scale.descriptor.name(), &args.heat, &args.picture)?;
-            destination.write(|out| picture.write_png(out))
+            let name = args.scale.descriptor.name();
+            let picture = heat_picture(mesh, values, name, &args.heat, &args.picture, part)?;
+            destination.write(|out| picture.write_png(out))?;
+            Ok(pixels_of(&picture))
         }
         Some(Kind::Mesh) => {
-            let heat = Heat::new(&values, args.heat.clip);
+            let heat = Heat::new(values, args.heat.clip);
             let colours: Vec<[u8; 3]> = heat.values.iter().map(|&value| sequential(value)).collect();
-            destination.write(|out| lwc::io::write_ply_coloured(out, &mesh, &colours))
+            destination.write(|out| lwc::io::write_ply_coloured(out, mesh, &colours))?;
+            Ok(format!("{}, coloured by {}", size_of(mesh), args.scale.descriptor))
         }
-        _ => destination.write(|out| write_csv(out, &values)),
+        _ => {
+            destination.write(|out| write_csv(out, values))?;
+            Ok(counted(values.len(), "row", "rows"))
+        }
     }
+}
+
+/// The descriptor at each vertex.
+fn evaluate(file: &MeshFile, scale: &Scale, mean_edge: f64, part: Part) -> Result<Vec<f64>, FeaturesError> {
+    let MeshFile { mesh, attributes, .. } = file;
+    let (descriptor, window) = (scale.descriptor, scale.window.window());
+    let vertices = Vertices::new(mesh.num_vertices(), part);
+    let progress = |more: usize| vertices.add(more);
+    let choices = &scale.descriptor_attributes;
+    if choices.is_empty() {
+        return Ok(evaluate_with_progress(descriptor, mesh, &window, mean_edge, &progress));
+    }
+    let features = Features::choose(mesh, attributes, choices)?;
+    evaluate_with_features(descriptor, mesh, &features, &window, mean_edge, &progress)
 }
 
 /// What is written.

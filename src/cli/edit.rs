@@ -2,14 +2,13 @@
 
 use super::args::{LimitArgs, Reading};
 use super::exit::Failure;
-use super::input::{StreamSource, read_mesh};
-use super::output::Destination;
-use super::quantity::counted;
+use super::input::read_mesh;
+use super::output::{Destination, say_written, size_of};
+use super::stream::StreamSource;
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::io::{Format, WriteError};
 use lwc::multiresolution::DetailTransfer;
-use std::io::{self, Read, Write};
 use std::path::PathBuf;
 
 /// Put the details of a stream back on one of its coarse levels that was edited.
@@ -49,20 +48,21 @@ pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
     destination.check(Some(&args.changed), false)?;
     destination.check(Some(&args.stream), false)?;
 
-    let changed = read_mesh(&args.changed, &args.reading, ui)?.mesh;
+    let bar = ui.bar();
+    let [reading, decoding, editing, writing] =
+        bar.split([("reading", 5.0), ("decoding", 75.0), ("editing", 10.0), ("writing", 10.0)]);
+    let changed = read_mesh(&args.changed, &args.reading, reading, ui)?.mesh;
     let source = StreamSource::new(Some(&args.stream))?;
-    let mut bytes = Vec::new();
-    source.open()?.read_to_end(&mut bytes).map_err(Failure::Input).with_context(|| source.name())?;
-    let spinner = ui.spinner("editing");
-    let edition = DetailTransfer::new(&bytes, changed.num_vertices(), args.limits.limits())
+    let bytes = source.read()?;
+    let (num_vertices, limits) = (changed.num_vertices(), args.limits.limits());
+    let edition = DetailTransfer::new_with_progress(&bytes, num_vertices, limits, &|done| decoding.set(done))
         .with_context(|| source.name())?;
+    editing.set(0.0);
     let level = edition.level();
     let mesh = edition.apply(&changed).with_context(|| args.changed.display().to_string())?;
-    drop(spinner);
+    writing.set(0.0);
     lwc::io::write(path, &mesh).with_context(|| destination.name())?;
-    if !ui.is_quiet() {
-        let vertices = counted(mesh.num_vertices(), "vertex", "vertices");
-        writeln!(io::stdout(), "{}: {vertices}, details above level {level}", destination.name())?;
-    }
+    drop(bar);
+    say_written(&destination, &format!("{}, details above level {level}", size_of(&mesh)), ui);
     Ok(())
 }

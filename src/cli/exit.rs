@@ -37,6 +37,9 @@ pub enum Failure {
     /// An input cannot be read.
     #[error("{0}")]
     Input(io::Error),
+    /// An input has no bytes.
+    #[error("the input is empty")]
+    Empty,
     /// The stream ends too early to say anything of itself.
     #[error("the stream ends before its table of passes is complete")]
     CutTable,
@@ -59,7 +62,7 @@ fn code(error: &anyhow::Error) -> u8 {
         None.or(cause.downcast_ref().map(|failure| match failure {
             Failure::Usage(_) => USAGE,
             Failure::Input(_) => INPUT,
-            Failure::CutTable => DAMAGED,
+            Failure::Empty | Failure::CutTable => DAMAGED,
             Failure::Verification(_) => VERIFICATION,
         }))
         .or(cause.downcast_ref().map(|error| match error {

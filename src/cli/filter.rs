@@ -4,7 +4,7 @@ use super::args::{Reading, Scale};
 use super::exit::Failure;
 use super::gain::Gain;
 use super::input::read_mesh;
-use super::output::Destination;
+use super::output::{Destination, say_written, size_of};
 use super::quantity;
 use super::ui::Ui;
 use anyhow::Context;
@@ -12,7 +12,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lwc::TriMesh;
 use lwc::descriptors::mean_edge_length;
 use lwc::io::{Format, WriteError};
-use lwc::multiresolution::{Decomposition, Options, Prediction, Threshold, denoised};
+use lwc::multiresolution::{Decomposition, Options, Prediction, Threshold, denoised_with_progress};
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -85,15 +85,22 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
         return Err(Failure::Usage("there is something to do, but no -o FILE for the result".into()).into());
     }
     let name = args.input.display().to_string();
-    let mesh = read_mesh(&args.input, &args.reading, ui)?.mesh;
-    let spinner = ui.spinner("filtering");
+    let bar = ui.bar();
+    // Noise takes seven times as long as gains.
+    let filtering = if args.denoise { 600.0 } else { 85.0 };
+    let [reading, filtering, writing] =
+        bar.split([("reading", 10.0), ("filtering", filtering), ("writing", 5.0)]);
+    let mesh = read_mesh(&args.input, &args.reading, reading, ui)?.mesh;
+    let progress = |done: f64| filtering.set(done);
     let mut report = Vec::new();
     let filtered = if args.denoise {
-        let (filtered, thresholds) = denoised(&mesh, &args.options()).with_context(|| name.clone())?;
+        let (filtered, thresholds) =
+            denoised_with_progress(&mesh, &args.options(), &progress).with_context(|| name.clone())?;
         report_noise(&mut report, &mesh, &thresholds)?;
         filtered
     } else {
-        let mut decomposition = Decomposition::new(&mesh, &args.options()).with_context(|| name.clone())?;
+        let mut decomposition = Decomposition::new_with_progress(&mesh, &args.options(), &progress)
+            .with_context(|| name.clone())?;
         let gains = gains(&args.gain, decomposition.num_levels()).context(name)?;
         report_levels(&mut report, &decomposition, &gains, mean_edge_length(&mesh))?;
         for (level, &gain) in gains.iter().enumerate().skip(1).filter(|(_, gain)| **gain != 1.0) {
@@ -102,12 +109,16 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
         // Unit gains are the mesh itself, without rounding.
         if gains.iter().all(|&gain| gain == 1.0) { mesh } else { decomposition.reconstruct() }
     };
-    drop(spinner);
+    writing.set(0.0);
     if let Some(Destination::File(path)) = &destination {
         lwc::io::write(path, &filtered).with_context(|| path.display().to_string())?;
     }
+    drop(bar);
     if !ui.is_quiet() {
         io::stdout().lock().write_all(&report)?;
+    }
+    if let Some(destination) = &destination {
+        say_written(destination, &size_of(&filtered), ui);
     }
     Ok(())
 }

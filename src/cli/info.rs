@@ -1,27 +1,47 @@
 //! `lwc info`: what a stream says of itself.
 
-use super::args::Info;
+use super::args::LimitArgs;
+use super::decoding::Decoding;
 use super::exit::Failure;
-use super::input::StreamSource;
 use super::output::print_json;
 use super::passes;
 use super::rate_distortion;
+use super::stream::StreamSource;
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::descriptors::Descriptor;
-use lwc::{Partition, StreamInfo};
+use lwc::{DecodeOptions, Partition, StreamInfo};
 use serde_json::{Value, json};
 use std::io::{self, BufWriter, Read, Write};
+use std::path::PathBuf;
+
+/// Show levels, passes and parameters of a stream without decoding it.
+///
+/// The beginning of a stream is enough, if its table of passes is complete.
+#[derive(Debug, clap::Args)]
+pub struct Info {
+    /// Stream to look at; standard input if it is `-` or missing.
+    #[arg(value_name = "FILE.lwc")]
+    pub input: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub json: bool,
+    /// Draw a chart (.svg or .png): the distance from the finest mesh over the bytes read. This decodes the stream.
+    #[arg(long, value_name = "FILE", conflicts_with = "json")]
+    pub plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
 
 /// Reads up to the table of passes, counts the bytes behind it, reports.
 pub fn run(args: &Info, ui: &Ui) -> anyhow::Result<()> {
     if let Some(plot) = &args.plot {
-        return rate_distortion::run(args, plot, ui);
+        return rate_distortion::run(args.input.as_deref(), args.limits.limits(), plot, ui);
     }
     let source = StreamSource::new(args.input.as_deref())?;
     let mut reader = source.open()?;
     let (info, present, bytes) = read(&mut *reader).with_context(|| source.name())?;
-    let attribute_bytes = attribute_bytes(&bytes, args);
+    let attribute_bytes = attribute_bytes(&bytes, args, ui);
     let mut out = BufWriter::new(io::stdout().lock());
     if args.json {
         print_json(out, &to_json(&info, &attribute_bytes, &source.name(), present))?;
@@ -46,6 +66,9 @@ fn read(reader: &mut dyn Read) -> anyhow::Result<(StreamInfo, u64, Vec<u8>)> {
             let rest = io::copy(reader, &mut io::sink()).map_err(Failure::Input)?;
             return Ok((info, head.len() as u64 + rest, Vec::new()));
         }
+        if head.is_empty() {
+            return Err(Failure::Empty.into());
+        }
         if (read as u64) < wanted {
             return Err(Failure::CutTable.into());
         }
@@ -54,11 +77,14 @@ fn read(reader: &mut dyn Read) -> anyhow::Result<(StreamInfo, u64, Vec<u8>)> {
 }
 
 /// Bytes of each attribute, as far as the stream goes: only decoding tells.
-fn attribute_bytes(bytes: &[u8], args: &Info) -> Vec<u64> {
-    let mut decoder = lwc::Decoder::new(args.limits.limits());
+fn attribute_bytes(bytes: &[u8], args: &Info, ui: &Ui) -> Vec<u64> {
+    let bar = ui.bar();
+    let [part] = bar.split([("decoding", 1.0)]);
+    let options = DecodeOptions::new().limits(args.limits.limits());
+    let mut decoding = Decoding::new(options, None, None, part);
     // What is wrong with the stream is not asked here.
-    let _ = decoder.push(bytes);
-    decoder.attribute_bytes().to_vec()
+    let _ = decoding.take(bytes, |_| ());
+    decoding.decoder.attribute_bytes().to_vec()
 }
 
 /// Bytes that hold the table of most streams; twice as many are tried each time.

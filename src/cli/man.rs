@@ -1,12 +1,11 @@
 //! `lwc man`: the help texts as manual pages.
 
-use super::args::Args;
 use super::output::Destination;
 use super::quantity::counted;
 use super::ui::Ui;
 use anyhow::Context;
 use clap::builder::Resettable;
-use clap::{Command, CommandFactory, ValueHint};
+use clap::{Command, ValueHint};
 use clap_mangen::Man as Page;
 use clap_mangen::roff::{Roff, roman};
 use std::fs;
@@ -26,8 +25,7 @@ pub struct Man {
 }
 
 /// Writes all pages into the folder, or the first to standard output.
-pub fn run(args: &Man, ui: &Ui) -> anyhow::Result<()> {
-    let mut program = Args::command();
+pub fn run(args: &Man, mut program: Command, ui: &Ui) -> anyhow::Result<()> {
     // Subcommands get their full names and the general options.
     program.build();
     let Some(folder) = args.folder.as_deref().filter(|folder| *folder != Path::new("-")) else {
@@ -43,10 +41,8 @@ pub fn run(args: &Man, ui: &Ui) -> anyhow::Result<()> {
         Destination::File(path).write(|out| write_page(out, command))?;
         num_pages += 1;
     }
-    if !ui.is_quiet() {
-        let pages = counted(num_pages, "manual page", "manual pages");
-        writeln!(io::stdout(), "{}: {pages}", folder.display())?;
-    }
+    let pages = counted(num_pages, "manual page", "manual pages");
+    ui.say(&format!("{}: {pages}", folder.display()));
     Ok(())
 }
 

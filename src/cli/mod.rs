@@ -1,9 +1,11 @@
 //! The command line: one file per subcommand, on the public API of the library.
 
 pub mod args;
+mod bar;
 pub mod compare;
 pub mod completions;
 pub mod decode;
+mod decoding;
 pub mod describe;
 pub mod edit;
 pub mod encode;
@@ -13,15 +15,17 @@ pub mod filter;
 mod gain;
 pub mod info;
 mod input;
+mod input_file;
 pub mod man;
 mod output;
 mod passes;
+pub mod program;
 mod quantity;
 mod rate_distortion;
 pub mod render;
+mod screen;
 pub mod signals;
+mod stream;
 pub mod ui;
 mod verify;
-mod verify_attributes;
-mod verify_exact;
 pub mod view;

@@ -1,7 +1,11 @@
 //! Files that are written, or standard output in their place.
 
 use super::exit::Failure;
+use super::quantity::counted;
+use super::ui::Ui;
 use anyhow::Context;
+use lwc::TriMesh;
+use lwc::render::Image;
 use std::fs;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -71,6 +75,29 @@ impl Destination {
         };
         written.with_context(|| self.name())
     }
+}
+
+/// Says of a file what was written: `a.obj: 12 vertices, 20 faces, 1234 bytes`.
+pub fn say_written(destination: &Destination, what: &str, ui: &Ui) {
+    let Destination::File(path) = destination else { return };
+    let size = fs::metadata(path).map_or(String::new(), |file| format!(", {} bytes", file.len()));
+    ui.say(&format!("{}: {what}{size}", path.display()));
+}
+
+/// `12 vertices, 20 faces`.
+pub fn size_of(mesh: &TriMesh) -> String {
+    let vertices = counted(mesh.num_vertices(), "vertex", "vertices");
+    format!("{vertices}, {}", counted(mesh.num_triangles(), "triangle", "triangles"))
+}
+
+/// `800 × 600 pixels`.
+pub fn pixels_of(image: &Image) -> String {
+    format!("{} × {} pixels", image.width(), image.height())
+}
+
+/// Whether a file has this ending, in any case.
+pub fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
 /// `model.obj.zst` → `model`, in the same folder: a further ending may be put behind it.

@@ -1,16 +1,16 @@
 //! `lwc info --plot`: how near each prefix of a stream comes to its finest mesh.
 
-use super::args::Info;
+use super::bar::Part;
+use super::decoding::Decoding;
 use super::exit::Failure;
-use super::input::StreamSource;
-use super::output::Destination;
-use super::render::has_ending;
+use super::output::{Destination, has_ending, pixels_of, say_written};
+use super::quantity::counted;
+use super::stream::StreamSource;
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::metrics::{CompareOptions, compare};
 use lwc::render::{Chart, Series, log_ticks};
-use lwc::{DecodeError, DecodeOptions, Decoder};
-use std::io::Read;
+use lwc::{DecodeError, DecodeOptions, Decoder, Limits};
 use std::path::Path;
 
 /// Samples of each surface; the curve is drawn, not tabulated.
@@ -24,33 +24,42 @@ struct Point {
 }
 
 /// Decodes the stream twice, as meshes of all passes would fill memory, and draws.
-pub fn run(args: &Info, plot: &Path, ui: &Ui) -> anyhow::Result<()> {
+pub fn run(input: Option<&Path>, limits: Limits, plot: &Path, ui: &Ui) -> anyhow::Result<()> {
     let destination = Destination::new(plot.to_owned());
     if !has_ending(plot, "svg") && !has_ending(plot, "png") {
         let what = "unknown ending; plots are written as .svg or .png".to_owned();
         return Err(Failure::Usage(what)).with_context(|| destination.name());
     }
-    let source = StreamSource::new(args.input.as_deref())?;
+    let source = StreamSource::new(input)?;
     destination.check(source.path(), true)?;
-    let mut bytes = Vec::new();
-    source.open()?.read_to_end(&mut bytes).map_err(Failure::Input).with_context(|| source.name())?;
-    let points = measure(&bytes, args, ui).with_context(|| source.name())?;
+    let bytes = source.read()?;
+    let bar = ui.bar();
+    let parts = bar.split([("decoding", 20.0), ("measuring", 80.0)]);
+    let points = measure(&bytes, limits, parts).with_context(|| source.name())?;
+    drop(bar);
     let name = source.path().and_then(Path::file_name).unwrap_or_default().to_string_lossy().into_owned();
     let chart =
         chart(name, &points).ok_or_else(|| Failure::Usage("a stream of one pass has no curve".into()))?;
-    if has_ending(plot, "svg") {
+    let passes = counted(points.len(), "pass", "passes");
+    let what = if has_ending(plot, "svg") {
         let text = chart.to_svg()?;
-        destination.write(|out| out.write_all(text.as_bytes()))
+        destination.write(|out| out.write_all(text.as_bytes()))?;
+        format!("chart of {passes}")
     } else {
         let image = chart.to_image()?;
-        destination.write(|out| image.write_png(out))
-    }
+        destination.write(|out| image.write_png(out))?;
+        format!("chart of {passes}, {}", pixels_of(&image))
+    };
+    say_written(&destination, &what, ui);
+    Ok(())
 }
 
-fn measure(bytes: &[u8], args: &Info, ui: &Ui) -> anyhow::Result<Vec<Point>> {
-    let options = DecodeOptions::new().limits(args.limits.limits());
-    let finest = lwc::decode(bytes, options)?;
-    let bar = ui.bar("measuring");
+fn measure(bytes: &[u8], limits: Limits, [decoding, measuring]: [Part; 2]) -> anyhow::Result<Vec<Point>> {
+    let options = DecodeOptions::new().limits(limits);
+    let mut whole = Decoding::new(options, None, None, decoding);
+    whole.take(bytes, |_| ())?;
+    let finest = whole.decoder.preview().ok_or(DecodeError::NoMesh)?;
+    let num_passes = whole.decoder.passes_done();
     let mut decoder = Decoder::with_options(options);
     decoder.feed(bytes)?;
     let mut points = Vec::new();
@@ -58,7 +67,7 @@ fn measure(bytes: &[u8], args: &Info, ui: &Ui) -> anyhow::Result<Vec<Point>> {
         let mesh = decoder.mesh().ok_or(DecodeError::NoMesh)?.to_tri_mesh();
         let distance = compare(&finest, &mesh, &CompareOptions::new().samples(SAMPLES))?;
         points.push(Point { bytes: update.pass.end, db: distance.psnr_db() });
-        bar.set(update.pass.end as f64 / bytes.len().max(1) as f64);
+        measuring.set(points.len() as f64 / num_passes as f64);
     }
     Ok(points)
 }

@@ -1,8 +1,8 @@
 //! What a stream will cost, from its table of passes alone (`format/SPEC.md`, section 10): one that asks for more work
 //! than its bytes earn is refused before it has begun.
 
+use super::built_with::ASSETS;
 use super::frame::{StreamInfo, TrailingKind};
-use super::head::ASSETS;
 use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::Domain;

@@ -1,5 +1,6 @@
 //! What comes before the passes: header chunks in, [`StreamInfo`] out (`format/SPEC.md`, section 4).
 
+use super::built_with::ASSETS;
 use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, StreamInfo, TrailingInfo};
 use super::refused::{malformed, out_of_order, skip};
 use super::{attributes, forecast};
@@ -14,11 +15,7 @@ use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
 use crate::util::budget::Budget;
 
-/// Whether the decoder reads what is outside the surface. Otherwise it skips all of that like unknown chunks,
-/// and the compiler leaves out the code that would read it.
-pub(super) const ASSETS: bool = cfg!(feature = "assets");
-
-/// The header chunks received so far.
+/// The header chunks that have come.
 #[derive(Default)]
 pub(super) struct Head {
     header: Option<Header>,

@@ -2,6 +2,7 @@
 
 use super::frame::{PassInfo, PassKind};
 use super::running::Running;
+use super::state::PassDecoder;
 use crate::bitstream::header::Action;
 use crate::bitstream::profile::Profile;
 use crate::entropy::context_mixer::Mixing;
@@ -9,39 +10,9 @@ use crate::entropy::range_coder::RangeDecoder;
 use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::Surface;
-use crate::passes::connectivity::ConnectivityModels;
-use crate::passes::coordinates::CoordinateModels;
 use crate::passes::patch::{Patches, StarBuilder};
-use crate::passes::refine::RefineModels;
 use crate::passes::work_budget::WorkBudget;
 use crate::passes::{GridMesh, Malformed};
-
-/// The mesh and all that is learnt about it.
-#[derive(Clone)]
-pub(super) struct PassDecoder {
-    pub(super) mesh: GridMesh,
-    /// Made by the first pass, which has been checked against the limits then.
-    pub(super) models: Option<Models>,
-    pub(super) profile: Profile,
-}
-
-/// Adaptive models of splits and refinements.
-#[derive(Clone)]
-pub(super) struct Models {
-    pub(super) connectivity: ConnectivityModels,
-    pub(super) coordinates: CoordinateModels,
-    pub(super) refine: RefineModels,
-}
-
-impl Models {
-    pub(super) fn new(mixing: Mixing) -> Self {
-        Self {
-            connectivity: ConnectivityModels::new(mixing),
-            coordinates: CoordinateModels::new(mixing),
-            refine: RefineModels::new(mixing),
-        }
-    }
-}
 
 /// Bytes of memory that a vertex and a face of the finest mesh may take, working space included.
 const BYTES_PER_VERTEX: u64 = 64;

@@ -2,12 +2,13 @@
 
 use super::assemble::{Beside, Extras};
 use super::attributes::{self, AttributeDecoder};
+use super::built_with::ASSETS;
 use super::frame::{Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
-use super::head::{ASSETS, Head, Source};
+use super::head::{Head, Source};
 use super::level_mesh::LevelMesh;
-use super::passes::PassDecoder;
 use super::refused::{malformed, out_of_order, skip};
 use super::running::Running;
+use super::state::PassDecoder;
 use super::{environment, forecast};
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::compensation::Compensation;

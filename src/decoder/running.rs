@@ -1,7 +1,8 @@
 //! A pass amid its work: it goes on where it was, slice by slice.
 
+use super::built_with::STREAMS;
 use super::frame::{PassInfo, PassKind};
-use super::passes::{Models, PassDecoder};
+use super::state::{Models, PassDecoder};
 use crate::bitstream::header::Action;
 use crate::bitstream::profile::Profile;
 use crate::entropy::context_mixer::Mixing;
@@ -14,9 +15,6 @@ use crate::passes::coordinates_fast::Located;
 use crate::passes::patch::{Patches, StarBuilder};
 use crate::passes::work_budget::{SWEPT_PER_UNIT, WorkBudget};
 use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, coordinates_fast, refine};
-
-/// Whether the decoder reads the profile *fast*. Without it the compiler leaves out what would.
-const STREAMS: bool = Profile::Fast.is_supported();
 
 /// A pass that has begun, and what was there before it.
 pub(super) struct Running {

@@ -2,7 +2,7 @@
 
 use super::attributes::Quantised;
 use super::coarsen::Hierarchy;
-use super::padded;
+use super::payload::padded;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::{Domain, NO_ENTRY};

@@ -1,7 +1,7 @@
 //! Bytes for what a decoder has to do: a mesh may be coded in fewer bytes than the work of it is allowed to take
 //! (`format/SPEC.md`, section 10). Zeros make up for that.
 
-use super::write::WrittenPass;
+use super::written_pass::WrittenPass;
 use crate::decoder::{TrailingKind, forecast};
 use crate::passes::attribute::Declarations;
 use crate::passes::cost::{self, Counts, Ledger};

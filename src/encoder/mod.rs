@@ -9,17 +9,21 @@ mod earnings;
 mod number_format;
 mod options;
 mod patch_search;
+mod payload;
 pub(crate) mod quantise;
 mod schedule;
 mod tie_break;
 mod ties;
 mod trailing;
+mod tries;
 mod values;
 mod write;
+mod written_pass;
 
 use attributes::Elements;
 use tie_break::Signatures;
 use trailing::Exact;
+use tries::Tries;
 use values::ExactValues;
 
 pub use options::{EncodeOptions, Encoded, Progress};
@@ -29,7 +33,6 @@ use crate::descriptors::{Features, FeaturesError};
 use crate::error::EncodeError;
 use crate::mesh::repair::{RepairReport, cut};
 use crate::mesh::{Attributes, TriMesh, has_three_vertices};
-use crate::passes::Malformed;
 use std::cell::OnceCell;
 
 /// Encodes a mesh.
@@ -126,23 +129,28 @@ pub fn encode_with_attributes(
     let attempts = options.hierarchies_tried();
     let mut surface = Some(surface);
     let mut bytes: Vec<u8> = Vec::new();
+    let num_schedules = if options.steps_per_edge.is_some() { 1 } else { options.steps_tried().len() };
+    let tries = Tries::new(&attempts, num_schedules, progress);
     for (i, &attempt) in attempts.iter().enumerate() {
         let is_last = i + 1 == attempts.len();
         let taken = if is_last { surface.take() } else { surface.clone() }.unwrap_or_default();
         let (glued, seams, features) = (glued.clone(), quantised.seams(), features.clone());
         let companions = coarsen::Companions { glued, seams, features };
-        let hierarchy = coarsen::analyse(taken, &cells, companions, options, attempt, progress);
+        let hierarchy =
+            coarsen::analyse(taken, &cells, companions, options, attempt, &|now| tries.tell(i, 0, now));
         let is_one_schedule = options.steps_per_edge.is_some() || hierarchy.records.is_empty();
         let tried = if is_one_schedule { &[None] } else { options.steps_tried() };
-        for &steps in tried {
+        for (k, &steps) in tried.iter().enumerate() {
             let steps = options.steps_per_edge.or(steps);
             let schedule = schedule::plan(&hierarchy, options.quantization_bits, steps);
-            let new = write::write(&hierarchy, &cells, &quantised, &exact, &points, &schedule, progress);
+            let progress = |now: Progress| tries.tell(i, k, now);
+            let new = write::write(&hierarchy, &cells, &quantised, &exact, &points, &schedule, &progress);
             if bytes.is_empty() || new.len() < bytes.len() {
                 bytes = new;
             }
         }
     }
+    tries.finish();
     // The encoder's own bytes always hold a header.
     let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(bytes.len()))?;
     Ok(Encoded { bytes, info, repair, values_dropped: quantised.values_dropped })
@@ -173,16 +181,4 @@ fn features(
     }
     let features = Features::choose(mesh, attributes, &options.descriptor_attributes)?;
     Ok(Some(features.of_vertices(vertices)))
-}
-
-/// A payload with as many zeros behind it as a decoder wants to believe that it holds so many things.
-fn padded(mut payload: Vec<u8>, count: u64, most_per_byte: u64) -> Vec<u8> {
-    let least = count.div_ceil(most_per_byte).saturating_sub(1);
-    payload.resize(payload.len().max(least as usize), 0);
-    payload
-}
-
-/// The codes fail on malformed payloads only, and an encoder reads none.
-fn expect_sound<T>(result: Result<T, Malformed>) -> T {
-    result.unwrap_or_else(|e| unreachable!("the encoder made a stream it refuses: {}", e.0))
 }

@@ -1,7 +1,7 @@
 //! Which patches restore a level's vertices, found before the level below is coded: the walk looks at no
 //! model of coordinates, and the encoder knows where the vertices will be.
 
-use super::expect_sound;
+use super::payload::expect_sound;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::{BitCoder, RangeEncoder};
 use crate::mesh::Surface;

@@ -1,11 +1,12 @@
 //! What follows the last pass: everything about the mesh that the surface on the grid does not contain.
 
+use super::attributes;
 use super::canonical_order::Ordered;
 use super::number_format::cheapest_scale;
 use super::options::EncodeOptions;
+use super::payload::{expect_sound, padded};
 use super::tie_break::Signatures;
 use super::values::ExactValues;
-use super::{attributes, expect_sound, padded};
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::{Grid, MAX_VERTICES_PER_BYTE};
 use crate::decoder::assemble::Extras;

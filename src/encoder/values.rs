@@ -1,8 +1,8 @@
 //! Values of attributes bit for bit, and those of isolated vertices and degenerate faces.
 
 use super::attributes::{Quantised, QuantisedAttribute};
-use super::expect_sound;
 use super::number_format::cheapest_scale;
+use super::payload::expect_sound;
 use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::{Attribute, Attributes, NO_ENTRY, Values};
 use crate::passes::attribute::Declaration;

@@ -4,11 +4,13 @@ use super::attribute_writer::AttributeWriter;
 use super::attributes::Quantised;
 use super::coarsen::{ANALYSIS_SHARE, Hierarchy};
 use super::compensation::{Fitter, Point};
+use super::earnings;
 use super::options::Progress;
 use super::patch_search::{Found, Names, PatchSearch};
+use super::payload::{expect_sound, padded};
 use super::schedule::{Schedule, Step};
 use super::trailing::{Exact, Written};
-use super::{earnings, expect_sound, padded};
+use super::written_pass::WrittenPass;
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::compensation::Compensation;
@@ -161,23 +163,6 @@ fn assemble(
         chunk::write(&mut bytes, *kind, payload);
     }
     bytes
-}
-
-/// Row and payload of a pass, and the glue behind it.
-pub(super) struct WrittenPass {
-    pub(super) row: Pass,
-    pub(super) payload: Vec<u8>,
-    pub(super) glue: Option<Vec<u8>>,
-    pub(super) compensation: Compensation,
-}
-
-impl WrittenPass {
-    /// Makes the payload longer; returns by how much.
-    pub(super) fn append_zeros(&mut self, count: u64) -> u64 {
-        self.payload.resize(self.payload.len() + count as usize, 0);
-        self.row.bytes = self.payload.len() as u32;
-        count
-    }
 }
 
 /// The decoder's state.

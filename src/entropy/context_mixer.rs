@@ -1,22 +1,18 @@
 //! Adaptive bits with mixed contexts (`format/SPEC.md`, section 6.3): counters predict a bit from
 //! one context each, a small online logistic regression weighs them.
 
+use super::counter::Counter;
 use super::range_coder::BitCoder;
 use super::specialists::{self, Specialists};
 use super::tables::Tables;
+use super::weights::WeightSet;
 use crate::util::simd4::Lanes;
-use std::hint::black_box;
 
 /// Inputs of every mixer: contexts, direct inputs and the bias together. Two SIMD vectors.
 const LANES: usize = 8;
 
 /// Weight a context starts with.
 const INITIAL_WEIGHT: f32 = 0.35;
-/// Step of the weights: FAST / (1 + n / DECAY) + SLOW after n bits.
-const RATE_FAST: f32 = 0.05;
-const RATE_SLOW: f32 = 0.008;
-const RATE_DECAY: f32 = 256.0;
-
 /// How bits are mixed: a number of the profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mixing {
@@ -25,65 +21,6 @@ pub(crate) enum Mixing {
     /// Beside them by a specialist for each value of the first contexts.
     Specialised,
 }
-
-/// Probability of a one in one context: 22 bits of probability, 10 bits of age.
-#[derive(Clone, Copy)]
-pub(crate) struct Counter(u32);
-
-impl Counter {
-    const AGE_BITS: u32 = 10;
-    const AGE_MASK: u32 = (1 << Self::AGE_BITS) - 1;
-
-    pub(crate) const fn new() -> Self {
-        Self::aged(1 << 15, 0)
-    }
-
-    /// With the probability `p16` in 1/65536 as if it had learnt it from `age` bits.
-    pub(super) const fn aged(p16: u32, age: u32) -> Self {
-        Self(p16 << 16 | age)
-    }
-
-    /// Probability of a one in 1/4096.
-    #[inline]
-    fn p12(self) -> usize {
-        (self.0 >> 20) as usize
-    }
-
-    /// Probability of a one in 1/65536.
-    #[inline]
-    pub(super) fn p16(self) -> u32 {
-        self.0 >> 16
-    }
-
-    #[inline]
-    fn age(self) -> u32 {
-        self.0 & Self::AGE_MASK
-    }
-
-    /// Moves towards `bit` by 1/(age + 1.5), the age growing up to `limit`.
-    #[inline(always)]
-    pub(super) fn update(&mut self, bit: bool, limit: u32) {
-        let age = self.age();
-        // Upside down for a one, so that both bits go the same way.
-        let flip = if bit { u32::MAX >> Self::AGE_BITS } else { 0 };
-        let p = (self.0 >> Self::AGE_BITS) ^ flip;
-        let p = p - ((u64::from(p) * u64::from(RECIPROCALS[age as usize])) >> 16) as u32;
-        self.0 = (p ^ flip) << Self::AGE_BITS | (age + u32::from(age < limit));
-    }
-}
-
-const fn reciprocals() -> [u32; 1024] {
-    let mut table = [0; 1024];
-    let mut age = 0;
-    while age < 1024 {
-        // 65536 / (age + 1.5), rounded down.
-        table[age] = (2 * 65_536 / (2 * age + 3)) as u32;
-        age += 1;
-    }
-    table
-}
-
-static RECIPROCALS: [u32; 1024] = reciprocals();
 
 /// A binary decision with `C` contexts and up to `LANES − 1 − C` direct inputs.
 #[derive(Clone)]
@@ -96,40 +33,6 @@ pub(crate) struct MixedBit<const C: usize> {
     limit: u32,
     /// With [`Mixing::Specialised`].
     specialists: Option<Specialists>,
-}
-
-/// The weights of all inputs.
-#[derive(Clone, Copy)]
-pub(super) struct WeightSet {
-    weights: [Lanes; 2],
-    /// Bits it has seen.
-    seen: u32,
-}
-
-impl WeightSet {
-    fn new(weights: [Lanes; 2]) -> Self {
-        Self { weights, seen: 0 }
-    }
-
-    /// Log-odds of a one.
-    #[inline(always)]
-    pub(super) fn log_odds(&self, inputs: &[Lanes; 2]) -> f32 {
-        // Through memory: compilers would take all products apart, as only sums of their lanes are wanted.
-        let half = black_box(self.weights[0] * inputs[0] + self.weights[1] * inputs[1]);
-        (half.0[0] + half.0[2]) + (half.0[1] + half.0[3])
-    }
-
-    /// Learns a bit of which these weights said that it is a one with probability `p` in 1/65536, `eagerness` times as
-    /// fast as usual.
-    #[inline(always)]
-    pub(super) fn learn(&mut self, inputs: &[Lanes; 2], p: u32, bit: bool, eagerness: f32) {
-        let rate = RATE_SLOW + RATE_FAST / (1.0 + self.seen as f32 * (1.0 / RATE_DECAY));
-        self.seen = self.seen.saturating_add(1);
-        let target = if bit { 1.0 } else { 0.0 };
-        let step = (target - p as f32 * (1.0 / 65_536.0)) * (rate * eagerness);
-        self.weights[0] += inputs[0] * step;
-        self.weights[1] += inputs[1] * step;
-    }
 }
 
 impl<const C: usize> MixedBit<C> {

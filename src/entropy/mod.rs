@@ -3,9 +3,11 @@
 
 pub(crate) mod bits;
 pub(crate) mod context_mixer;
+mod counter;
 pub(crate) mod mixture;
 pub(crate) mod range_coder;
 pub(crate) mod residual;
 mod specialists;
 pub(crate) mod streams;
 pub(crate) mod tables;
+mod weights;

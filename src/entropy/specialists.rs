@@ -1,9 +1,10 @@
 //! What the profile *max* adds to mixed bits (`format/SPEC.md`, section 6.3): each value of the first contexts
 //! has its own weights, and corrects the resulting probability.
 
-use super::context_mixer::{Counter, WeightSet};
+use super::counter::Counter;
 use super::range_coder::PROBABILITY_ONE;
 use super::tables::Tables;
+use super::weights::WeightSet;
 use crate::util::simd4::Lanes;
 
 /// Contexts of a bit whose values have specialists.

@@ -1,5 +1,6 @@
 //! Why a mesh file was not read or written.
 
+use super::format::{Format, known_endings};
 use crate::mesh::MeshError;
 use std::{fmt, io};
 use thiserror::Error;
@@ -36,7 +37,7 @@ pub enum ReadError {
     #[error("cannot decompress: {0}")]
     Zstd(#[source] io::Error),
     /// The ending of the file's name is not that of a format we know.
-    #[error("unknown file ending; known are {}, each also with .zst", super::known_endings(|_| true))]
+    #[error("unknown file ending; known are {}, each also with .zst", known_endings(|_| true))]
     UnknownEnding,
     /// The file breaks the rules of its format, ends early, or holds numbers no mesh can have.
     #[error("{place}: {message}")]
@@ -91,10 +92,7 @@ pub enum WriteError {
     #[error(transparent)]
     Io(#[from] io::Error),
     /// The ending of the file's name is not that of a format we know.
-    #[error(
-        "unknown file ending; known are {}, each also with .zst",
-        super::known_endings(super::Format::is_written)
-    )]
+    #[error("unknown file ending; known are {}, each also with .zst", known_endings(Format::is_written))]
     UnknownEnding,
     /// The format cannot hold this mesh.
     #[error("{message}")]

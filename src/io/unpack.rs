@@ -1,11 +1,19 @@
 //! Files as they are read: unpacked if they are compressed, and never more than was allowed.
 
-use super::{Format, MAX_FILE_BYTES, ReadError, format_and_compression, source::Source};
+use super::counter::Counter;
+use super::error::ReadError;
+use super::format::{Format, format_and_compression};
+use super::source::Source;
 use std::{
     fs::File,
     io::{self, BufReader, Read},
     path::Path,
 };
+
+/// The largest file that is read, in bytes after decompression: 16 GiB.
+///
+/// A mesh of a hundred million vertices is smaller in every format but the wordiest OBJ.
+pub const MAX_FILE_BYTES: u64 = 16 << 30;
 
 /// How much a file may unpack to; how files are read in [`crate::io`].
 ///
@@ -37,22 +45,31 @@ impl ReadOptions {
         self
     }
 
-    /// The (unpacked) bytes of a file, and what its ending says they are.
-    pub(super) fn open(&self, path: &Path) -> Result<(Source<'static>, Format), ReadError> {
+    /// The (unpacked) bytes of a file, and what its ending says they are. Tells `progress` which share of them is read.
+    pub(super) fn open<'a>(
+        &self,
+        path: &Path,
+        progress: &'a dyn Fn(f64),
+    ) -> Result<(Source<'a>, Format), ReadError> {
         let (format, is_compressed) = format_and_compression(path).ok_or(ReadError::UnknownEnding)?;
         let file = File::open(path)?;
+        // What is no regular file, such as a pipe, does not know how long it is.
+        let metadata = file.metadata()?;
+        let num_bytes = metadata.is_file().then_some(metadata.len());
+        let share = if format.is_read_as_a_whole() { SHARE_OF_BYTES } else { 1.0 };
+        let file = Counter::new(file, num_bytes, share, progress);
         if is_compressed {
             return Ok((Source::new(Limited::new(Unpacker::new(file, self)?), None), format));
         }
-        // Anything but a regular file, such as a pipe, does not know its length.
-        let metadata = file.metadata()?;
-        let num_bytes = metadata.is_file().then_some(metadata.len());
         if num_bytes.is_some_and(|num_bytes| num_bytes > MAX_FILE_BYTES) {
             return Err(too_large());
         }
         Ok((Source::new(Limited::new(file), num_bytes), format))
     }
 }
+
+/// What of the time it takes to read a file that comes into memory before it is looked at.
+const SHARE_OF_BYTES: f64 = 0.3;
 
 fn too_large() -> ReadError {
     ReadError::TooLarge { message: format!("more than {MAX_FILE_BYTES} bytes") }
@@ -79,30 +96,16 @@ impl<R: Read> Read for Limited<R> {
     }
 }
 
-/// Counts what it reads.
-struct Counter {
-    file: File,
-    num_bytes: u64,
-}
-
-impl Read for Counter {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let num_read = self.file.read(buffer)?;
-        self.num_bytes += num_read as u64;
-        Ok(num_read)
-    }
-}
-
 /// Unpacks a file while that is in proportion to its size.
-struct Unpacker {
-    decoder: zstd::Decoder<'static, BufReader<Counter>>,
+struct Unpacker<'a> {
+    decoder: zstd::Decoder<'static, BufReader<Counter<'a>>>,
     num_unpacked: u64,
     options: ReadOptions,
 }
 
-impl Unpacker {
-    fn new(file: File, options: &ReadOptions) -> io::Result<Self> {
-        let decoder = zstd::Decoder::new(Counter { file, num_bytes: 0 })?;
+impl<'a> Unpacker<'a> {
+    fn new(file: Counter<'a>, options: &ReadOptions) -> io::Result<Self> {
+        let decoder = zstd::Decoder::new(file)?;
         Ok(Self { decoder, num_unpacked: 0, options: options.clone() })
     }
 
@@ -115,7 +118,7 @@ impl Unpacker {
     }
 }
 
-impl Read for Unpacker {
+impl Read for Unpacker<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let unpacked = self.decoder.read(buffer);
         let num_read = unpacked.map_err(|error| match error.kind() {

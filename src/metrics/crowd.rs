@@ -6,7 +6,7 @@
 //! points of a surface cost about n √m looks. Most looks are at two planes: a triangle lies in its own, and
 //! beyond the one through its point nearest to any place and across the way there.
 
-use super::nearest::bounds;
+use super::bounds::bounds;
 use crate::mesh::triangle::{nearest_point, squared_distance};
 use glam::DVec3;
 

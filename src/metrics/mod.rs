@@ -10,6 +10,7 @@
 //! The same meshes give the same bits, whatever the number of threads: samples are taken in blocks of fixed
 //! size whose sums are added in order.
 
+mod bounds;
 mod crowd;
 mod known;
 mod nearest;
@@ -17,6 +18,7 @@ mod oriented;
 mod sample;
 
 use crate::mesh::TriMesh;
+use crate::util::count::Count;
 use crowd::{Crowd, Waiting};
 use glam::DVec3;
 use known::Known;
@@ -129,23 +131,45 @@ pub enum CompareError {
 /// # Errors
 /// If a mesh has no vertices.
 pub fn compare(a: &TriMesh, b: &TriMesh, options: &CompareOptions) -> Result<Comparison, CompareError> {
+    compare_with_progress(a, b, options, &|_| ())
+}
+
+/// As [`compare`], telling `progress` again and again which share of the points is measured, 0 to 1.
+///
+/// # Errors
+/// As [`compare`].
+pub fn compare_with_progress(
+    a: &TriMesh,
+    b: &TriMesh,
+    options: &CompareOptions,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Comparison, CompareError> {
     let empty = |is_first| CompareError::Empty { is_first };
     let box_a = a.bounding_box().ok_or(empty(true))?;
     let box_b = b.bounding_box().ok_or(empty(false))?;
     let frame = Frame::around(box_a, box_b);
     let surface_a = Surface::new(a, &frame);
     let surface_b = Surface::new(b, &frame);
+    let [forward, backward] =
+        [&surface_a, &surface_b].map(|from| num_samples(options, from).saturating_add(from.num_points));
+    let count = Count::new(forward.saturating_add(backward), progress);
     let one_sided = |from: &Surface, to: &Surface| {
-        let samples = options.samples.unwrap_or(MIN_DEFAULT_SAMPLES.max(2 * from.num_points));
-        let Distance { rms, max } = from.distance_to(to, samples);
+        let Distance { rms, max } = from.distance_to(to, num_samples(options, from), &count);
         Distance { rms: frame.length_to_model(rms), max: frame.length_to_model(max) }
     };
     let (low, high) = box_a;
-    Ok(Comparison {
+    let comparison = Comparison {
         forward: one_sided(&surface_a, &surface_b),
         backward: one_sided(&surface_b, &surface_a),
         diagonal: frame.length_to_model((frame.to_unit(high) - frame.to_unit(low)).length()),
-    })
+    };
+    count.finish();
+    Ok(comparison)
+}
+
+/// Samples of the surface of a mesh.
+fn num_samples(options: &CompareOptions, surface: &Surface) -> usize {
+    options.samples.unwrap_or(MIN_DEFAULT_SAMPLES.max(2 * surface.num_points))
 }
 
 /// The coordinates that distances are measured in: the boxes of both meshes, moved to the origin and scaled
@@ -211,17 +235,17 @@ impl Surface {
         self.places.iter().zip(is_used).filter_map(|(&p, used)| used.then_some(p)).collect()
     }
 
-    fn distance_to(&self, other: &Self, num_samples: usize) -> Distance {
+    fn distance_to(&self, other: &Self, num_samples: usize, count: &Count) -> Distance {
         let known = Known::new(&other.triangles);
         let is_common: Vec<bool> = self.triangles.par_iter().map(|t| known.contains(t)).collect();
         let tree = NearestTriangle::new(&known.distinct());
         drop(known);
         let apart = self.points(|t| !is_common[t]);
         let at_vertices =
-            DistanceSum::over(&tree, apart.len(), |range| apart[range].iter().copied().map(Some));
+            DistanceSum::over(&tree, count, apart.len(), |range| apart[range].iter().copied().map(Some));
         let samples = SurfaceSampler::new(&self.triangles, num_samples.min(u32::MAX as usize));
         let mut sum = match &samples {
-            Some(samples) => DistanceSum::over(&tree, samples.len(), |range| {
+            Some(samples) => DistanceSum::over(&tree, count, samples.len(), |range| {
                 samples.points(range).map(|(t, point)| (!is_common[t]).then_some(point))
             }),
             None => DistanceSum { count: self.num_points, ..at_vertices },
@@ -245,13 +269,14 @@ impl DistanceSum {
     /// distance.
     fn over<P: Iterator<Item = Option<DVec3>>>(
         tree: &NearestTriangle,
+        told: &Count,
         count: usize,
         points: impl Fn(std::ops::Range<usize>) -> P + Sync,
     ) -> Self {
         let mut blocks = Vec::with_capacity(count.div_ceil(BLOCK_POINTS));
         for begin in (0..count).step_by(POINTS_AT_ONCE) {
             let end = count.min(begin + POINTS_AT_ONCE);
-            let squared = squared_distances(tree, begin..end, &points);
+            let squared = squared_distances(tree, told, begin..end, &points);
             blocks.extend(squared.chunks(BLOCK_POINTS).map(Self::of));
         }
         blocks.iter().fold(Self::default(), |total, block| Self {
@@ -276,6 +301,7 @@ impl DistanceSum {
 /// are found together.
 fn squared_distances<P: Iterator<Item = Option<DVec3>>>(
     tree: &NearestTriangle,
+    count: &Count,
     range: std::ops::Range<usize>,
     points: &(impl Fn(std::ops::Range<usize>) -> P + Sync),
 ) -> Vec<f64> {
@@ -298,12 +324,14 @@ fn squared_distances<P: Iterator<Item = Option<DVec3>>>(
                 }
             }
         }
+        count.add(squared.len() - waiting.len());
         waiting
     };
     let blocks = squared.par_chunks_mut(BLOCK_POINTS).enumerate();
     let mut waiting: Vec<Waiting> = blocks.flat_map_iter(measure_block).collect();
     if !waiting.is_empty() {
         Crowd::new(tree.triangles()).find(&mut waiting, NOISE * NOISE);
+        count.add(waiting.len());
         waiting.into_iter().for_each(|Waiting { index, squared: found, .. }| squared[index] = found);
     }
     squared

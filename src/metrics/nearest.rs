@@ -5,6 +5,7 @@
 //! nearer box first and leaves out boxes that are farther away than the best triangle so far. Where that helps, a box
 //! is turned (`oriented.rs`).
 
+use super::bounds::bounds;
 use super::oriented::OrientedBox;
 use crate::mesh::triangle::squared_distance;
 use glam::DVec3;
@@ -114,12 +115,6 @@ fn num_nodes(count: usize) -> usize {
 /// How many of `count` triangles go to the left: half of the leaves.
 fn num_left(count: usize) -> usize {
     count.div_ceil(LEAF_TRIANGLES) / 2 * LEAF_TRIANGLES
-}
-
-/// The least and the greatest coordinates of some points.
-pub(super) fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
-    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    points.fold(none, |(low, high), p| (low.min(p), high.max(p)))
 }
 
 /// Sorts `triangles`, which begin at `begin` of all, into the leaves of the tree in `nodes`.

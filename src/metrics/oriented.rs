@@ -1,7 +1,7 @@
 //! Boxes turned as the triangles within: long thin ones that lie across the axes, and large ones side by side as the leaves
 //! of a book, fill little of a box along the axes (Gottschalk, Lin and Manocha, *OBBTree*, 1996).
 
-use super::nearest::bounds;
+use super::bounds::bounds;
 use glam::{DMat3, DVec3};
 
 /// Coordinates are at most 2: rounding moves a turned one by less.

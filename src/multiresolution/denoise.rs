@@ -33,11 +33,26 @@ pub struct Threshold {
 /// # Errors
 /// As [`Decomposition::new`].
 pub fn denoised(mesh: &TriMesh, options: &Options) -> Result<(TriMesh, Vec<Vec<Threshold>>), EncodeError> {
+    denoised_with_progress(mesh, options, &|_| ())
+}
+
+/// As [`denoised`], telling `progress` after each level of each run which share of the work is done, 0 to 1.
+///
+/// # Errors
+/// As [`denoised`].
+pub fn denoised_with_progress(
+    mesh: &TriMesh,
+    options: &Options,
+    progress: &dyn Fn(f64),
+) -> Result<(TriMesh, Vec<Vec<Threshold>>), EncodeError> {
+    let runs = Descriptor::ALL.len() as f64;
     let mut sums = vec![DVec3::ZERO; mesh.num_vertices()];
     let mut thresholds = Vec::new();
     for descriptor in Descriptor::ALL {
         let options = Options { descriptor, prediction: Prediction::Flat, update: true, ..*options };
-        let mut decomposition = Decomposition::new(mesh, &options)?;
+        let before = thresholds.len() as f64;
+        let of_run = |done: f64| progress((before + done) / runs);
+        let mut decomposition = Decomposition::new_with_progress(mesh, &options, &of_run)?;
         thresholds.push(decomposition.denoise());
         let run = decomposition.reconstruct();
         // Differences, so that far origins cost no digits.
@@ -46,7 +61,6 @@ pub fn denoised(mesh: &TriMesh, options: &Options) -> Result<(TriMesh, Vec<Vec<T
             *sum += DVec3::from_array(to) - DVec3::from_array(from);
         });
     }
-    let runs = Descriptor::ALL.len() as f64;
     let moved = mesh.positions().iter().zip(&sums);
     let positions = moved.map(|(&from, &sum)| (DVec3::from_array(from) + sum / runs).to_array()).collect();
     Ok((TriMesh::from_valid_parts(positions, mesh.triangles().to_vec()), thresholds))

@@ -1,52 +1,17 @@
 //! Details of a stream put back on a coarse mesh that somebody has changed.
 
+use super::decomposition::Decomposition;
+use super::edit_error::EditError;
 use super::hierarchy::{Hierarchy, StreamHierarchy};
 use super::lift::vertex_normals;
-use super::{Decomposition, Prediction};
+use super::options::Prediction;
 use crate::encoder::quantise::unit_near;
-use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::{TriMesh, has_three_vertices};
 use glam::DVec3;
-use thiserror::Error;
 
-/// Why a changed mesh cannot get its details back.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum EditError {
-    /// The stream does not decode.
-    #[error(transparent)]
-    Stream(#[from] DecodeError),
-    /// The details at the end of the stream are missing.
-    #[error("the stream is incomplete, so some of the details are missing")]
-    Incomplete,
-    /// No level has as many vertices.
-    #[error("the changed mesh has {found} vertices, but the levels of the stream have {}", list(.levels))]
-    Vertices {
-        /// Vertices of the changed mesh.
-        found: usize,
-        /// Vertices of each level, coarsest first.
-        levels: Vec<usize>,
-    },
-    /// The faces are not those of the level.
-    #[error(
-        "{differing} of the {expected} faces of level {level} are not in the changed mesh, which has {found}"
-    )]
-    Faces {
-        /// The level with as many vertices.
-        level: usize,
-        /// Its faces.
-        expected: usize,
-        /// Faces of the changed mesh.
-        found: usize,
-        /// Faces of the level that the changed mesh lacks.
-        differing: usize,
-    },
-}
-
-fn list(counts: &[usize]) -> String {
-    counts.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
-}
+/// What of the time decoding the stream takes; the rest are details.
+const SHARE_OF_DECODING: f64 = 0.7;
 
 /// A level of a stream that may be changed, and the details above it.
 #[derive(Clone, Debug)]
@@ -69,8 +34,23 @@ impl DetailTransfer {
     /// # Errors
     /// If the stream is damaged, incomplete or beyond `limits`, or no level has as many vertices.
     pub fn new(bytes: &[u8], num_vertices: usize, limits: Limits) -> Result<Self, EditError> {
+        Self::new_with_progress(bytes, num_vertices, limits, &|_| ())
+    }
+
+    /// As [`DetailTransfer::new`], telling `progress` again and again which share of the work is done, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`DetailTransfer::new`].
+    pub fn new_with_progress(
+        bytes: &[u8],
+        num_vertices: usize,
+        limits: Limits,
+        progress: &dyn Fn(f64),
+    ) -> Result<Self, EditError> {
+        let of_stream = |done: f64| progress(done * SHARE_OF_DECODING);
         let StreamHierarchy { hierarchy, coarse: cut, fine, joined } =
-            Hierarchy::of_stream(bytes, num_vertices, limits)?;
+            Hierarchy::of_stream(bytes, num_vertices, limits, &of_stream)?;
+        let of_details = |done: f64| progress(SHARE_OF_DECODING + done * (1.0 - SHARE_OF_DECODING));
         let finest_level =
             crate::decoder::StreamInfo::read(bytes)?.map_or(0, |info| info.finest_level() as usize);
         let level = finest_level - hierarchy.num_levels();
@@ -80,8 +60,9 @@ impl DetailTransfer {
         let frames = Frames::new(&cut, &places);
         let offsets = positions.iter().zip(places).map(|(&fine, coarse)| fine - coarse);
         let refinements = offsets.enumerate().map(|(v, d)| frames.to_local(v, d)).collect();
+        let prediction = Prediction::default();
         let mut decomposition =
-            Decomposition::of_hierarchy(hierarchy, positions, Prediction::default(), false);
+            Decomposition::of_hierarchy(hierarchy, positions, prediction, false, &of_details);
         decomposition.source = (0..fine.num_vertices() as u32).collect();
         decomposition.input = fine;
         decomposition.unit = unit;
@@ -135,7 +116,6 @@ fn points(mesh: &TriMesh, unit: f64) -> Vec<DVec3> {
     mesh.positions().iter().map(|&p| DVec3::from_array(p) * unit).collect()
 }
 
-/// Faces with the smallest corner first, in order.
 /// The mesh with its vertices joined, as a decoder does: `joined` are numbered as they come.
 fn join(mesh: &TriMesh, joined: &[u32]) -> TriMesh {
     let mut positions: Vec<[f64; 3]> = Vec::new();
@@ -148,6 +128,7 @@ fn join(mesh: &TriMesh, joined: &[u32]) -> TriMesh {
     TriMesh::from_valid_parts(positions, triangles.filter(has_three_vertices).collect())
 }
 
+/// Faces with the smallest corner first, in order.
 fn sorted(mesh: &TriMesh) -> Vec<[u32; 3]> {
     let turned = |&[a, b, c]: &[u32; 3]| [a, b, c].min([b, c, a]).min([c, a, b]);
     let mut triangles: Vec<[u32; 3]> = mesh.triangles().iter().map(turned).collect();

@@ -1,7 +1,7 @@
 //! The connectivity of all levels, vertices numbered coarse before fine.
 
-use super::Options;
-use super::detail_transfer::EditError;
+use super::edit_error::EditError;
+use super::options::Options;
 use crate::decoder::{Decoder, PassKind};
 use crate::descriptors;
 use crate::encoder::quantise::{LEGALITY_BITS, quantise};
@@ -54,8 +54,12 @@ impl Hierarchy {
         &self.levels[level].1
     }
 
-    /// Takes vertices out of `mesh` level by level.
-    pub(super) fn of_mesh(mesh: &TriMesh, options: &Options) -> Result<MeshHierarchy, EncodeError> {
+    /// Takes vertices out of `mesh` level by level, and tells `progress` which share is out.
+    pub(super) fn of_mesh(
+        mesh: &TriMesh,
+        options: &Options,
+        progress: &dyn Fn(f64),
+    ) -> Result<MeshHierarchy, EncodeError> {
         let Repaired { surface, source, .. } = repair(mesh);
         if surface.triangles.is_empty() {
             return Err(EncodeError::NoTriangles);
@@ -80,7 +84,11 @@ impl Hierarchy {
         let none: BitVec = BitVec::repeat(false, num_vertices);
         let mut descent = Descent::new(surface, geometry, settings, none).with_mean_edge(mean_edge);
         // Finest first, in the numbering of the surface.
-        let mut levels: Vec<Level> = descent.by_ref().map(|(finer, _)| finer).collect();
+        let mut levels: Vec<Level> = Vec::new();
+        while let Some((finer, _)) = descent.next() {
+            levels.push(finer);
+            progress(1.0 - descent.level().vertices.len() as f64 / num_vertices as f64);
+        }
         levels.push(descent.into_level());
 
         // The coarsest level that a vertex is part of, then its index.
@@ -111,6 +119,7 @@ impl Hierarchy {
         bytes: &[u8],
         num_vertices: usize,
         limits: Limits,
+        progress: &dyn Fn(f64),
     ) -> Result<StreamHierarchy, EditError> {
         let mut decoder = Decoder::new(limits);
         decoder.feed(bytes)?;
@@ -118,6 +127,7 @@ impl Hierarchy {
         let mut coarse: Vec<TriMesh> = Vec::new();
         let mut counts = Vec::new();
         while let Some(update) = decoder.step()? {
+            progress(update.pass.end as f64 / bytes.len() as f64);
             let Some(mesh) = decoder.mesh() else { continue };
             if update.pass.kind != PassKind::Refine {
                 counts.push(mesh.num_vertices());

@@ -1,7 +1,7 @@
 //! One level up or down: prediction, frames and update (derived in the module's documentation).
 
-use super::Prediction;
 use super::hierarchy::Hierarchy;
+use super::options::Prediction;
 use super::weights::{closed_ring, open_ring};
 use glam::DVec3;
 use rayon::prelude::*;

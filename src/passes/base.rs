@@ -2,7 +2,7 @@
 //! of the boundary until it is enclosed, then around the next one. The positions follow in
 //! [`base_positions`](super::base_positions).
 
-use super::base_positions::Placement;
+use super::base_positions::{Base, Placement};
 use super::work_budget::WorkBudget;
 use super::{GridMesh, Malformed};
 use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
@@ -26,16 +26,6 @@ const LIMIT: u32 = 250;
 pub(crate) struct BaseTarget<'a> {
     pub(crate) surface: &'a Surface,
     pub(crate) positions: &'a [[i32; 3]],
-}
-
-/// The coded mesh, and where its parts come from in the target (empty when decoding).
-#[cfg_attr(not(feature = "encoder"), allow(dead_code))]
-pub(crate) struct Base {
-    pub(crate) mesh: GridMesh,
-    /// Target vertex of each vertex.
-    pub(crate) vertex_source: Vec<u32>,
-    /// Target corner of the first corner of each triangle.
-    pub(crate) corner_source: Vec<u32>,
 }
 
 /// Codes a base mesh of `num_vertices` and `num_faces` with `precision` bits per coordinate.

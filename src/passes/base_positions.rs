@@ -2,13 +2,12 @@
 //! neighbours that are placed already, as a vertex of a split is from its ring; the one about which most is
 //! known comes next.
 
-use super::Malformed;
-use super::base::Base;
 use super::base_traversal::BaseTraversal;
 use super::coding_context::{CodingContext, Fringe};
 use super::coordinate_prediction::VertexPrediction;
 use super::coordinates::CoordinateModels;
 use super::work_budget::WorkBudget;
+use super::{GridMesh, Malformed};
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::mixture::Mixture;
 use crate::entropy::range_coder::BitCoder;
@@ -23,6 +22,16 @@ const LEAST_JUMP: f32 = 0.3;
 /// Steps of the mean length of jumps and of edges.
 const JUMP_RATE: f32 = 0.2;
 const EDGE_RATE: f32 = 0.1;
+
+/// The coded mesh, and where its parts come from in the target (empty when decoding).
+#[cfg_attr(not(feature = "encoder"), allow(dead_code))]
+pub(crate) struct Base {
+    pub(crate) mesh: GridMesh,
+    /// Target vertex of each vertex.
+    pub(crate) vertex_source: Vec<u32>,
+    /// Target corner of the first corner of each triangle.
+    pub(crate) corner_source: Vec<u32>,
+}
 
 /// A base mesh whose vertices get their places.
 pub(crate) struct Placement<'a> {

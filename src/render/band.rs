@@ -1,7 +1,7 @@
 //! Some rows of a picture. Where a triangle is large, blocks of samples that hide it are left out, and of long thin
 //! triangles only what they cover is looked at.
 
-use super::raster::{Drawn, Projected};
+use super::projected::{Drawn, Projected};
 use std::ops::Range;
 
 /// Rows of a band.

@@ -15,22 +15,23 @@ mod band;
 mod camera;
 mod chart;
 mod colour;
+mod error;
 mod font;
 mod heat;
 mod image;
 mod paint;
+mod projected;
 mod raster;
 mod shade;
 
 pub use camera::{Camera, UnknownView, Up, View};
 pub use chart::{Chart, Series, log_ticks};
 pub use colour::sequential;
+pub use error::RenderError;
 pub use heat::{Heat, with_legend};
 pub use image::Image;
 pub use paint::{CornerPaint, Paint};
-pub use shade::render;
-
-use thiserror::Error;
+pub use shade::{render, render_with_progress};
 
 /// How a surface looks.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,24 +74,4 @@ pub enum Shading {
     Smooth,
     /// From the triangles.
     Flat,
-}
-
-/// Why there is no picture.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum RenderError {
-    /// The picture would have no pixels, or too many.
-    #[error("a picture of {width} by {height} pixels: each side must be 1 to 16384")]
-    Size {
-        /// Pixels across.
-        width: u32,
-        /// Pixels down.
-        height: u32,
-    },
-    /// There must be one value per vertex, or corner.
-    #[error("the number of values is not that of the vertices or corners")]
-    Values,
-    /// A chart cannot be drawn.
-    #[error("the chart cannot be drawn: {0}")]
-    Chart(String),
 }

@@ -1,6 +1,8 @@
 //! Which triangle is seen at each sample: a depth buffer over horizontal bands, one band per task.
 
 use super::band::{BAND_ROWS, Band};
+use super::projected::{Drawn, Projected};
+use crate::util::count::Count;
 use rayon::prelude::*;
 use std::collections::HashSet;
 
@@ -17,54 +19,9 @@ pub(super) struct Visible {
     pub(super) near: Vec<f32>,
 }
 
-/// A triangle on the picture: columns, rows and nearness of its corners, in samples.
-#[derive(Clone, Copy)]
-pub(super) struct Projected(pub(super) [[f64; 3]; 3]);
-
-impl Projected {
-    /// Twice the signed area; a positive sign is clockwise on the picture.
-    pub(super) fn area(&self) -> f64 {
-        let [a, b, c] = self.0;
-        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    }
-
-    /// Weights of the corners at a place; `None` for a triangle without area.
-    pub(super) fn weights(&self, x: f64, y: f64) -> Option<[f64; 3]> {
-        let [a, b, c] = self.0;
-        let scale = 1.0 / self.area();
-        let part =
-            |p: [f64; 3], q: [f64; 3]| ((q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])) * scale;
-        scale.is_finite().then(|| [part(b, c), part(c, a), part(a, b)])
-    }
-
-    /// Distance of the place with these `weights` from the nearest side, in samples.
-    pub(super) fn distance_to_sides(&self, weights: [f64; 3]) -> f64 {
-        let area = self.area().abs();
-        let side = |i: usize| {
-            let (p, q) = (self.0[(i + 1) % 3], self.0[(i + 2) % 3]);
-            weights[i] * area / (q[0] - p[0]).hypot(q[1] - p[1])
-        };
-        (0..3).map(side).fold(f64::INFINITY, f64::min)
-    }
-
-    pub(super) fn range(&self, axis: usize) -> (f64, f64) {
-        let [a, b, c] = self.0.map(|corner| corner[axis]);
-        (a.min(b).min(c), a.max(b).max(c))
-    }
-
-    /// Samples along `axis` whose middles lie within, and within `0..count`.
-    pub(super) fn samples(&self, axis: usize, count: usize) -> std::ops::Range<usize> {
-        let (low, high) = self.range(axis);
-        // Casts saturate at 0.
-        let begin = (low - 0.5).ceil() as usize;
-        let end = if high < 0.5 { 0 } else { (high - 0.5).floor() as usize + 1 };
-        begin..end.min(count)
-    }
-}
-
 impl Visible {
-    /// Draws `triangles` on `width` by `height` samples; of equally near ones the first is seen.
-    pub(super) fn new(triangles: &[Projected], width: usize, height: usize) -> Self {
+    /// Draws `triangles` on `width` by `height` samples; of equally near ones the first is seen. Counts the rows.
+    pub(super) fn new(triangles: &[Projected], width: usize, height: usize, count: &Count) -> Self {
         let mut visible = Self {
             width,
             height,
@@ -75,21 +32,16 @@ impl Visible {
         let bands = visible.triangle.par_chunks_mut(BAND_ROWS * width);
         bands.zip(visible.near.par_chunks_mut(BAND_ROWS * width)).enumerate().for_each(
             |(band, (seen, near))| {
+                let num_rows = seen.len() / width;
                 let mut band = Band::new(band * BAND_ROWS, width, seen, near);
                 for drawn in &order {
                     band.draw(&triangles[drawn.triangle as usize], drawn);
                 }
+                count.add(num_rows);
             },
         );
         visible
     }
-}
-
-/// A triangle that is on the picture, with the rows it has there.
-pub(super) struct Drawn {
-    pub(super) triangle: u32,
-    pub(super) begin: u32,
-    pub(super) end: u32,
 }
 
 /// If the boxes of the triangles have more samples than this for each of the picture, much is hidden.
@@ -120,6 +72,10 @@ fn drawing_order(triangles: &[Projected], width: usize, height: usize) -> Vec<Dr
 mod tests {
     use super::*;
 
+    fn drawn(triangles: &[Projected], width: usize, height: usize) -> Visible {
+        Visible::new(triangles, width, height, &Count::new(height, &|_| ()))
+    }
+
     fn square(low: f64, high: f64, near: f64) -> [Projected; 2] {
         let p = |x: f64, y: f64| [x, y, near];
         let [a, b, c, d] = [p(low, low), p(high, low), p(high, high), p(low, high)];
@@ -129,7 +85,7 @@ mod tests {
     #[test]
     fn a_square_has_its_samples_and_the_nearer_one_wins() {
         let triangles = [square(10.0, 60.0, 1.0), square(30.0, 50.0, 2.0), square(20.0, 40.0, 0.0)].concat();
-        let visible = Visible::new(&triangles, 100, 90);
+        let visible = drawn(&triangles, 100, 90);
         let count =
             |range: std::ops::Range<u32>| visible.triangle.iter().filter(|t| range.contains(t)).count();
         assert_eq!((count(0..2), count(2..4), count(4..6)), (2500 - 400, 400, 0));
@@ -138,10 +94,10 @@ mod tests {
 
     #[test]
     fn what_lies_outside_is_left_out() {
-        let visible = Visible::new(&square(-20.0, 500.0, 0.0), 40, 70);
+        let visible = drawn(&square(-20.0, 500.0, 0.0), 40, 70);
         assert!(visible.triangle.iter().all(|&t| t != NOTHING));
         let flat = Projected([[0.0, 0.0, 0.0], [30.0, 30.0, 0.0], [60.0, 60.0, 0.0]]);
-        let visible = Visible::new(&[flat, Projected([[-9.0; 3], [-1.0; 3], [-5.0, -2.0, 0.0]])], 40, 70);
+        let visible = drawn(&[flat, Projected([[-9.0; 3], [-1.0; 3], [-5.0, -2.0, 0.0]])], 40, 70);
         assert!(visible.triangle.iter().all(|&t| t == NOTHING));
     }
 
@@ -198,7 +154,7 @@ mod tests {
         triangles.extend_from_within(100..200);
         for triangles in [&triangles[..], &triangles[..4], &triangles[300..310], &triangles[..20].repeat(30)]
         {
-            let visible = Visible::new(triangles, width, height);
+            let visible = drawn(triangles, width, height);
             assert!((visible.triangle, visible.near) == by_brute_force(triangles, width, height));
         }
     }

@@ -1,9 +1,11 @@
 //! From visible triangles to colours.
 
 use super::camera::Camera;
-use super::raster::{NOTHING, Projected, Visible};
+use super::projected::Projected;
+use super::raster::{NOTHING, Visible};
 use super::{Image, Paint, RenderError, Shading, Style};
 use crate::TriMesh;
+use crate::util::count::Count;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -35,6 +37,20 @@ const MAX_SAMPLES: u64 = 1 << 28;
 /// # Errors
 /// If the size is out of range or the paint does not fit the mesh.
 pub fn render(mesh: &TriMesh, paint: Paint, camera: &Camera, style: &Style) -> Result<Image, RenderError> {
+    render_with_progress(mesh, paint, camera, style, &|_| ())
+}
+
+/// As [`render`], telling `progress` again and again which share of the work is done, 0 to 1.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_with_progress(
+    mesh: &TriMesh,
+    paint: Paint,
+    camera: &Camera,
+    style: &Style,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Image, RenderError> {
     paint.check(mesh)?;
     let [width, height] = style.size;
     let pixels = u64::from(width) * u64::from(height);
@@ -42,8 +58,10 @@ pub fn render(mesh: &TriMesh, paint: Paint, camera: &Camera, style: &Style) -> R
     let scale = (1..=style.oversampling.clamp(1, 8)).rev().find(fits).unwrap_or(1);
     let mut image = Image::new(width, height, style.background)?;
     let samples = [width as usize * scale as usize, height as usize * scale as usize];
+    // Each row has its triangles, then its colours, and is made smaller.
+    let count = Count::new(3 * samples[1], progress);
     let scene = Scene::new(mesh, paint, camera, style, samples);
-    let visible = Visible::new(&scene.triangles, samples[0], samples[1]);
+    let visible = Visible::new(&scene.triangles, samples[0], samples[1], &count);
     let mut large = Image::oversized(samples, style.background);
     large.par_rows_mut().enumerate().for_each(|(row, pixels)| {
         for (column, pixel) in pixels.as_chunks_mut::<4>().0.iter_mut().enumerate() {
@@ -54,8 +72,10 @@ pub fn render(mesh: &TriMesh, paint: Paint, camera: &Camera, style: &Style) -> R
                 *pixel = [r, g, b, 255];
             }
         }
+        count.add(1);
     });
     image.paste(&large.reduced(scale), 0, 0);
+    count.finish();
     Ok(image)
 }
 

@@ -79,8 +79,10 @@ pub(crate) fn remove_level(
                 rings.valence(place) <= max_valence as usize && !anchors.contain(vertices[place as usize])
             });
             leave_seams(optimize, surface, seams, vertices, &mut free);
-            let ((), chosen) =
-                rayon::join(|| surface.forget(&rings, vertices), || closely_packed(&rings, &free));
+            let ((), chosen) = rayon::join(
+                || surface.forget(vertices, |place| rings.of(place)),
+                || closely_packed(&rings, &free),
+            );
             let chosen = chosen.into_iter().map(|place| vertices[place as usize]).collect();
             drop((saliency, rings));
             remove_as_decoded(

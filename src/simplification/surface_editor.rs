@@ -1,6 +1,5 @@
 //! A surface from which vertices are taken, one star at a time.
 
-use super::Rings;
 use super::hubs::Hubs;
 use crate::mesh::Surface;
 use crate::mesh::surface::{NO_CORNER, next, prev};
@@ -71,10 +70,10 @@ impl SurfaceEditor {
         }
     }
 
-    /// Forgets the former neighbours; `rings` are those of all vertices.
-    pub(crate) fn forget(&mut self, rings: &Rings, vertices: &[u32]) {
+    /// Forgets the neighbours that were; `ring_of` has the places of those that each vertex has now.
+    pub(crate) fn forget<'a>(&mut self, vertices: &[u32], ring_of: impl Fn(u32) -> &'a [u32]) {
         for (&v, place) in vertices.iter().zip(0..) {
-            let bits = rings.of(place).iter().map(|&u| bit(vertices[u as usize]));
+            let bits = ring_of(place).iter().map(|&u| bit(vertices[u as usize]));
             self.acquaintances[v as usize] = bits.fold(0, |all, bit| all | bit);
         }
     }

@@ -3,6 +3,8 @@
 
 pub(crate) mod budget;
 pub(crate) mod bytes;
+#[cfg(any(feature = "metrics", feature = "render"))]
+pub(crate) mod count;
 #[cfg(feature = "encoder")]
 pub(crate) mod morton;
 pub(crate) mod parallel;

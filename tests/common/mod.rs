@@ -8,6 +8,8 @@ pub mod corpus;
 pub mod exact;
 pub mod kinds;
 pub mod valid;
+#[cfg(feature = "cli")]
+pub mod workshop;
 
 use std::collections::HashMap;
 

@@ -5,8 +5,10 @@ mod charts;
 mod ranking;
 mod results;
 
+use super::bar::Part;
 use super::input::read_mesh;
-use super::ui::{Bar, Ui};
+use super::quantity::counted;
+use super::ui::Ui;
 use anyhow::Context;
 use args::Experiment as Args;
 use lwc::TriMesh;
@@ -22,16 +24,21 @@ pub fn run(args: &Args, ui: &Ui) -> anyhow::Result<()> {
     let mut results = Results::open(&args.out, (&args.settings()).into())?;
     let weights: Vec<f64> = args.meshes.iter().map(|path| weight(path)).collect();
     let total: f64 = weights.iter().sum();
-    let bar = ui.bar_with_time_left("experiment");
+    let bar = ui.bar();
+    let [whole] = bar.split([("experiment", 1.0)]);
     let mut before = 0.0;
     for (path, weight) in args.meshes.iter().zip(&weights) {
-        let mesh = read_mesh(path, &args.reading, ui)?.mesh;
-        let share = Share { bar: &bar, begin: before / total, length: weight / total };
-        run_mesh(args, path, &mesh, &mut results, &share)?;
+        let part = whole.between(before / total, (before + weight) / total);
+        let [reading, running] = part.split([("reading", 2.0), ("experiment", 98.0)]);
+        let mesh = read_mesh(path, &args.reading, reading, ui)?.mesh;
+        run_mesh(args, path, &mesh, &mut results, running, ui)?;
         before += weight;
     }
     drop(bar);
     ranking::print(&mut io::stdout().lock(), &results)?;
+    let runs = counted(results.runs.len(), "run", "runs");
+    let meshes = counted(results.by_subject().len(), "mesh", "meshes");
+    ui.say(&format!("{}: results.json and results.csv of {runs}, charts of {meshes}", args.out.display()));
     Ok(())
 }
 
@@ -45,19 +52,13 @@ fn weight(path: &Path) -> f64 {
     }
 }
 
-/// Part of the bar that belongs to a mesh.
-struct Share<'a> {
-    bar: &'a Bar,
-    begin: f64,
-    length: f64,
-}
-
 fn run_mesh(
     args: &Args,
     path: &Path,
     mesh: &TriMesh,
     results: &mut Results,
-    share: &Share,
+    part: Part,
+    ui: &Ui,
 ) -> anyhow::Result<()> {
     let subject = Subject::new(path, mesh, args.noise());
     let missing = |d: &&Descriptor| !results.contains(&subject, **d);
@@ -66,12 +67,11 @@ fn run_mesh(
         let experiment = Experiment::new(mesh, args.noise()).with_context(|| path.display().to_string())?;
         for (i, &descriptor) in missing.iter().enumerate() {
             let progress = |fraction: f64| {
-                let done = (i as f64 + fraction) / missing.len() as f64;
-                share.bar.set(share.begin + share.length * done);
+                part.set((i as f64 + fraction) / missing.len() as f64);
             };
             let steps = experiment.run(descriptor, &args.settings(), &progress);
             let run = Run { subject: subject.clone(), descriptor: descriptor.name().into(), steps };
-            share.bar.suspend(|| print(&run))?;
+            ui.beside_bar(|| print(&run))?;
             results.runs.push(run);
             results.save(&args.out)?;
         }

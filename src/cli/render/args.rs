@@ -121,6 +121,12 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// How long drawing takes, where reading a mesh of usual size takes 50.
+    pub fn work(&self) -> f64 {
+        let [width, height] = self.size.map(f64::from);
+        5.0 + width * height / 1e5
+    }
+
     pub fn style(&self) -> Style {
         let usual = Style::default();
         Style {

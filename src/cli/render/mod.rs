@@ -3,42 +3,61 @@
 pub mod args;
 mod montage;
 
+use super::bar::{Part, Vertices};
 use super::exit::Failure;
-use super::input::{DecodedStream, StreamSource, in_place, note_if_incomplete, read_mesh};
-use super::output::Destination;
+use super::input::{in_place, read_mesh};
+use super::input_file::is_stream;
+use super::output::{Destination, has_ending, pixels_of, say_written};
+use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete};
 use super::ui::Ui;
 use anyhow::Context;
 use args::{AttributeKind, ColorBy, HeatArgs, Picture, Render};
-use lwc::descriptors::{evaluate, mean_edge_length};
+use lwc::descriptors::{evaluate_with_progress, mean_edge_length};
 use lwc::io::MeshFile;
 use lwc::mesh::Attributes;
-use lwc::render::{Camera, CornerPaint, Heat, Image, Paint, RenderError, render, with_legend};
+use lwc::render::{Camera, CornerPaint, Heat, Image, Paint, RenderError, render_with_progress, with_legend};
 use lwc::{DecodeError, DecodeOptions, TriMesh};
-use std::path::Path;
 
 /// Reads, draws, writes.
 pub fn run(args: &Render, ui: &Ui) -> anyhow::Result<()> {
     let destination = Destination::new(args.output.clone());
     check_ending(&destination).with_context(|| destination.name())?;
     destination.check(Some(&args.input), false)?;
-    let picture = if args.montage {
-        montage::montage(args, ui)?
-    } else {
-        let MeshFile { mesh, attributes, .. } = read(args, ui)?;
-        match args.color_by {
-            Some(ColorBy::Descriptor(descriptor)) => {
-                let values = evaluate(descriptor, &mesh, &args.window.window(), mean_edge_length(&mesh));
-                heat_picture(&mesh, &values, descriptor.name(), &args.heat, &args.picture)?
-            }
-            Some(ColorBy::Attribute(kind)) => {
-                let paint =
-                    paint(&mesh, &attributes, kind).with_context(|| args.input.display().to_string())?;
-                picture_with(&mesh, Paint::Corners(&paint), &args.picture)?
-            }
-            None => plain_picture(&mesh, &args.picture)?,
-        }
+    let bar = ui.bar();
+    let reading = if is_stream(&args.input) { "decoding" } else { "reading" };
+    let [making, writing] = bar.split([(reading, 90.0), ("writing", 10.0)]);
+    let picture = if args.montage { montage::montage(args, making)? } else { picture(args, making, ui)? };
+    writing.set(0.0);
+    destination.write(|out| picture.write_png(out))?;
+    drop(bar);
+    say_written(&destination, &pixels_of(&picture), ui);
+    Ok(())
+}
+
+/// One picture.
+fn picture(args: &Render, part: Part, ui: &Ui) -> anyhow::Result<Image> {
+    let (descriptor, evaluating) = match args.color_by {
+        Some(ColorBy::Descriptor(descriptor)) => (descriptor.name(), 50.0),
+        _ => ("drawing", 0.0),
     };
-    destination.write(|out| picture.write_png(out))
+    let [reading, evaluating, drawing] =
+        part.split([(part.stage(), 50.0), (descriptor, evaluating), ("drawing", args.picture.work())]);
+    let MeshFile { mesh, attributes, .. } = read(args, reading, ui)?;
+    match args.color_by {
+        Some(ColorBy::Descriptor(descriptor)) => {
+            let vertices = Vertices::new(mesh.num_vertices(), evaluating);
+            let (window, mean_edge) = (args.window.window(), mean_edge_length(&mesh));
+            let progress = |more: usize| vertices.add(more);
+            let values = evaluate_with_progress(descriptor, &mesh, &window, mean_edge, &progress);
+            let title = descriptor.name();
+            Ok(heat_picture(&mesh, &values, title, &args.heat, &args.picture, drawing)?)
+        }
+        Some(ColorBy::Attribute(kind)) => {
+            let paint = paint(&mesh, &attributes, kind).with_context(|| args.input.display().to_string())?;
+            Ok(picture_with(&mesh, Paint::Corners(&paint), &args.picture, drawing)?)
+        }
+        None => Ok(picture_with(&mesh, Paint::Plain, &args.picture, drawing)?),
+    }
 }
 
 fn check_ending(destination: &Destination) -> Result<(), Failure> {
@@ -50,10 +69,6 @@ fn check_ending(destination: &Destination) -> Result<(), Failure> {
     }
 }
 
-pub fn has_ending(path: &Path, ending: &str) -> bool {
-    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
-}
-
 /// The colours that an attribute gives.
 fn paint(mesh: &TriMesh, attributes: &Attributes, kind: AttributeKind) -> Result<CornerPaint, Failure> {
     let paint = kind.find(attributes).and_then(|attribute| CornerPaint::new(mesh, attribute));
@@ -61,20 +76,17 @@ fn paint(mesh: &TriMesh, attributes: &Attributes, kind: AttributeKind) -> Result
 }
 
 /// The mesh to show.
-fn read(args: &Render, ui: &Ui) -> anyhow::Result<MeshFile> {
-    if !has_ending(&args.input, "lwc") {
+fn read(args: &Render, part: Part, ui: &Ui) -> anyhow::Result<MeshFile> {
+    if !is_stream(&args.input) {
         if args.level.is_some() || args.bytes.is_some() {
             let what = "--level and --bytes are for streams (.lwc)".to_owned();
             return Err(Failure::Usage(what)).with_context(|| args.input.display().to_string());
         }
-        return read_mesh(&args.input, &args.reading, ui);
+        return read_mesh(&args.input, &args.reading, part, ui);
     }
     let source = StreamSource::File(args.input.clone());
-    let mut options = DecodeOptions::new().limits(args.limits.limits());
-    if let Some(level) = args.level {
-        options = options.level(level);
-    }
-    let DecodedStream { decoder, error } = source.decode(args.bytes, options, ui)?;
+    let wanted = Wanted::new(DecodeOptions::new().limits(args.limits.limits()), args.level);
+    let DecodedStream { decoder, error } = source.decode(args.bytes, wanted, part, ui)?;
     if let Some(error) = error {
         return Err(error).with_context(|| source.name());
     }
@@ -89,16 +101,10 @@ fn camera(mesh: &TriMesh, picture: &Picture) -> Camera {
     Camera::fit(mesh, picture.view, picture.up, width, height)
 }
 
-/// `mesh` in one colour.
-///
-/// # Errors
-/// If the picture is too large.
-pub fn plain_picture(mesh: &TriMesh, picture: &Picture) -> Result<Image, RenderError> {
-    picture_with(mesh, Paint::Plain, picture)
-}
-
-fn picture_with(mesh: &TriMesh, paint: Paint, picture: &Picture) -> Result<Image, RenderError> {
-    render(mesh, paint, &camera(mesh, picture), &picture.style())
+fn picture_with(mesh: &TriMesh, paint: Paint, picture: &Picture, part: Part) -> Result<Image, RenderError> {
+    part.set(0.0);
+    let progress = |done: f64| part.set(done);
+    render_with_progress(mesh, paint, &camera(mesh, picture), &picture.style(), &progress)
 }
 
 /// `mesh` coloured by `values`, one per vertex, with a legend.
@@ -111,9 +117,9 @@ pub fn heat_picture(
     title: &str,
     heat: &HeatArgs,
     picture: &Picture,
+    part: Part,
 ) -> Result<Image, RenderError> {
     let heat = Heat::new(values, heat.clip);
-    let style = picture.style();
-    let image = render(mesh, Paint::Values(&heat.values), &camera(mesh, picture), &style)?;
-    with_legend(&image, title, &heat, style.background)
+    let image = picture_with(mesh, Paint::Values(&heat.values), picture, part)?;
+    with_legend(&image, title, &heat, picture.background)
 }

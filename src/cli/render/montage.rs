@@ -1,11 +1,12 @@
 //! All levels of a stream side by side.
 
 use super::args::Render;
-use super::has_ending;
+use crate::cli::bar::Part;
 use crate::cli::exit::Failure;
-use crate::cli::ui::Ui;
+use crate::cli::input_file::is_stream;
+use crate::cli::stream::StreamSource;
 use anyhow::Context;
-use lwc::metrics::{CompareOptions, compare};
+use lwc::metrics::{CompareOptions, compare_with_progress};
 use lwc::render::{Camera, Image, Paint, RenderError, render};
 use lwc::{DecodeError, Decoder, TriMesh};
 
@@ -20,15 +21,15 @@ struct Level {
     end: u64,
 }
 
-pub(super) fn montage(args: &Render, ui: &Ui) -> anyhow::Result<Image> {
+pub(super) fn montage(args: &Render, part: Part) -> anyhow::Result<Image> {
     let name = args.input.display().to_string();
-    if !has_ending(&args.input, "lwc") {
+    if !is_stream(&args.input) {
         let what = "a montage shows the levels of a stream (.lwc)".to_owned();
         return Err(Failure::Usage(what)).context(name);
     }
-    let bytes = std::fs::read(&args.input).map_err(Failure::Input).with_context(|| name.clone())?;
-    let bar = ui.bar("drawing");
-    let levels = decode(&bytes, args).with_context(|| name.clone())?;
+    let bytes = StreamSource::File(args.input.clone()).read()?;
+    let [decoding, drawing] = part.split([("decoding", 20.0), ("drawing", 80.0)]);
+    let levels = decode(&bytes, args, decoding).with_context(|| name.clone())?;
     let finest = levels.last().ok_or(DecodeError::NoMesh).with_context(|| name.clone())?;
     let wanted = |level: &&Level| args.levels.is_empty() || args.levels.contains(&level.level);
     let shown: Vec<&Level> = levels.iter().filter(wanted).collect();
@@ -42,10 +43,12 @@ pub(super) fn montage(args: &Render, ui: &Ui) -> anyhow::Result<Image> {
     let camera = Camera::fit(&finest.mesh, args.picture.view, args.picture.up, width, height);
     let mut cells = Vec::new();
     for (i, level) in shown.iter().enumerate() {
-        bar.set(i as f64 / shown.len() as f64);
+        let part = drawing.between(i as f64 / shown.len() as f64, (i + 1) as f64 / shown.len() as f64);
+        part.set(0.0);
         let picture = render(&level.mesh, Paint::Plain, &camera, &style)?;
         let options = CompareOptions::new().samples(SAMPLES);
-        let distance = compare(&finest.mesh, &level.mesh, &options).with_context(|| name.clone())?;
+        let distance = compare_with_progress(&finest.mesh, &level.mesh, &options, &|done| part.set(done))
+            .with_context(|| name.clone())?;
         let db = distance.psnr_db();
         let quality = if db.is_finite() { format!("{db:.1} dB") } else { "complete".to_owned() };
         let vertices = grouped(level.mesh.num_vertices() as u64);
@@ -59,12 +62,13 @@ pub(super) fn montage(args: &Render, ui: &Ui) -> anyhow::Result<Image> {
 }
 
 /// Every level in turn; a level lasts until the next split begins.
-fn decode(bytes: &[u8], args: &Render) -> Result<Vec<Level>, DecodeError> {
+fn decode(bytes: &[u8], args: &Render, part: Part) -> Result<Vec<Level>, DecodeError> {
     let mut decoder = Decoder::new(args.limits.limits());
     decoder.feed(bytes)?;
     let mut levels: Vec<Level> = Vec::new();
     while let Some(update) = decoder.step()? {
         let pass = update.pass;
+        part.set(pass.end as f64 / bytes.len() as f64);
         let passes = decoder.info().map_or(&[][..], |info| info.passes());
         let next = passes.get(decoder.passes_done());
         // Only the last mesh of a level is copied.

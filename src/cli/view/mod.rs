@@ -1,11 +1,12 @@
 //! `lwc view`: serves a page that refines a stream while it loads.
 
+pub mod args;
 mod http;
 mod model;
 
-use super::args::View;
 use super::ui::Ui;
 use anyhow::Context;
+use args::View;
 use http::{Answer, Request};
 use model::Model;
 use std::io::{self, Write};

@@ -1,9 +1,11 @@
 //! What the page shows: the stream, and what can be found out about it.
 
-use super::super::args::View;
-use super::super::exit::Failure;
-use super::super::input::read_mesh;
-use super::super::ui::Ui;
+use super::args::View;
+use crate::cli::exit::Failure;
+use crate::cli::input::read_mesh;
+use crate::cli::input_file::is_stream;
+use crate::cli::stream::StreamSource;
+use crate::cli::ui::Ui;
 use anyhow::Context;
 use lwc::descriptors::{Descriptor, evaluate, mean_edge_length};
 use lwc::mesh::Semantic;
@@ -37,12 +39,14 @@ impl Model {
     /// If the file cannot be read, is no stream, or cannot be encoded.
     pub fn open(args: &View, ui: &Ui) -> anyhow::Result<Self> {
         let name = args.input.display().to_string();
-        let is_stream = args.input.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("lwc"));
-        let bytes = if is_stream {
-            std::fs::read(&args.input).map_err(Failure::Input).with_context(|| name.clone())?
+        let bytes = if is_stream(&args.input) {
+            StreamSource::File(args.input.clone()).read()?
         } else {
-            encode(args, ui).with_context(|| name.clone())?
+            encode(args, ui)?
         };
+        if bytes.is_empty() {
+            return Err(Failure::Empty).context(name);
+        }
         if StreamInfo::read(&bytes).with_context(|| name.clone())?.is_none() {
             return Err(Failure::CutTable).with_context(|| name);
         }
@@ -111,13 +115,15 @@ fn has_assets(info: &StreamInfo) -> bool {
 }
 
 fn encode(args: &View, ui: &Ui) -> anyhow::Result<Vec<u8>> {
-    let file = read_mesh(&args.input, &args.reading, ui)?;
+    let bar = ui.bar();
+    let [reading, encoding] = bar.split([("reading", 5.0), ("encoding", 95.0)]);
+    let file = read_mesh(&args.input, &args.reading, reading, ui)?;
     let mut options = EncodeOptions::default();
     options.descriptor = args.scale.descriptor;
     options.window = args.scale.window.window();
-    let bar = ui.bar("encoding");
-    let progress = |now: lwc::Progress| bar.set_stage(now.stage, now.fraction);
-    Ok(lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress)?.bytes)
+    let progress = |now: lwc::Progress| encoding.set_stage(now.stage, now.fraction);
+    let encoded = lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress);
+    Ok(encoded.with_context(|| args.input.display().to_string())?.bytes)
 }
 
 /// Compares every pass with the last one.

@@ -1,6 +1,5 @@
 //! The header: which elements there are, and what each is made of.
 
-use super::body::Body;
 use crate::{
     io::{
         Place, ReadError,
@@ -33,6 +32,7 @@ pub(super) struct Element {
 }
 
 pub(super) struct Header {
+    pub encoding: Encoding,
     pub elements: Vec<Element>,
 }
 
@@ -51,7 +51,7 @@ impl Header {
 }
 
 /// Reads the header; what follows it is the body.
-pub(super) fn read_header<'s, 'a>(source: &'s mut Source<'a>) -> Result<(Header, Body<'s, 'a>), ReadError> {
+pub(super) fn read_header(source: &mut Source) -> Result<Header, ReadError> {
     match source.line() {
         Some(magic) if magic.text.trim_ascii_end() == b"ply" => {}
         _ => return Err(ReadError::syntax(Place::Line(1), "not a PLY file: it does not begin with `ply`")),
@@ -85,7 +85,7 @@ pub(super) fn read_header<'s, 'a>(source: &'s mut Source<'a>) -> Result<(Header,
             [b"end_header"] => {
                 let encoding =
                     encoding.ok_or_else(|| ReadError::syntax(place, "the header names no format"))?;
-                return Ok((Header { elements }, Body::new(encoding, source)));
+                return Ok(Header { encoding, elements });
             }
             _ => return Err(bad("not a line of a PLY header")),
         }

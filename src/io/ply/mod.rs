@@ -23,7 +23,8 @@ use header::{Element, Property, read_header};
 
 /// Reads a PLY file. Elements other than `vertex`, `face` and `tristrips` are skipped.
 pub(super) fn read(source: &mut Source) -> Result<MeshFile, ReadError> {
-    let (header, mut body) = read_header(source)?;
+    let header = read_header(source)?;
+    let mut body = Body::new(header.encoding, source);
     let num_vertices = header.num_vertices()?;
     let mut builder = MeshBuilder::default();
     let mut is_first = true;

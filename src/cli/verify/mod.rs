@@ -2,11 +2,16 @@
 //!
 //! Grid and comparison are written a second time here, so that encoder and decoder cannot agree on a mistake.
 
+mod attributes;
+mod exact;
+mod triangle;
+
+use super::bar::Part;
 use super::exit::Failure;
-use super::{verify_attributes, verify_exact};
-use lwc::mesh::Attributes;
+use lwc::io::MeshFile;
 use lwc::{Decoder, EncodeOptions, Encoded, Limits, TriMesh};
 use std::hash::{DefaultHasher, Hash, Hasher};
+use triangle::{is_usable, turned};
 
 /// Sizes of the pieces that the decoder gets, over and over: one byte, and lengths that divide nothing.
 const PIECES: [usize; 6] = [1, 3, 17, 997, 65_521, 7];
@@ -18,28 +23,33 @@ const PIECES: [usize; 6] = [1, 3, 17, 997, 65_521, 7];
 /// # Errors
 /// If anything differs.
 pub fn verify(
-    mesh: &TriMesh,
-    attributes: &Attributes,
+    file: &MeshFile,
     options: &EncodeOptions,
     encoded: &Encoded,
+    part: Part,
 ) -> Result<(), Failure> {
+    let (mesh, attributes) = (&file.mesh, &file.attributes);
     let check = || {
-        let decoder = decode(encoded)?;
+        let decoder = decode(encoded, part.between(0.0, 0.5))?;
         let expected = Quantised::new(mesh, options, encoded.info.side());
         compare_surface(&expected, options.quantization_bits, encoded, &decoder)?;
+        part.set(0.7);
         let (decoded, found) = decoder.to_tri_mesh_with_attributes().ok_or("there is no mesh")?;
         compare_whole(&kept(mesh, options), &decoded, &expected, options)?;
+        part.set(0.8);
         let cells: Vec<Cell> = mesh.positions().iter().map(|&p| expected.cell(p)).collect();
-        verify_attributes::compare(mesh, attributes, &cells, options, &decoder)?;
-        match options.lossless {
-            true => verify_exact::compare((mesh, attributes), (&decoded, &found), options),
-            false => Ok(()),
+        attributes::compare(mesh, attributes, &cells, options, &decoder)?;
+        part.set(0.9);
+        if options.lossless {
+            exact::compare((mesh, attributes), (&decoded, &found), options)?;
         }
+        part.set(1.0);
+        Ok(())
     };
     check().map_err(Failure::Verification)
 }
 
-fn decode(encoded: &Encoded) -> Result<Decoder, String> {
+fn decode(encoded: &Encoded, part: Part) -> Result<Decoder, String> {
     // These bytes are our own: no limits.
     let limits =
         Limits { max_memory: u64::MAX, max_vertices: u32::MAX, max_levels: u32::MAX, max_work: None };
@@ -61,6 +71,7 @@ fn decode(encoded: &Encoded) -> Result<Decoder, String> {
                 return Err(format!("the {kind} pass that ends at byte {} gives another mesh", pass.end));
             }
         }
+        part.set(1.0 - rest.len() as f64 / encoded.bytes.len() as f64);
         if rest.is_empty() {
             break;
         }
@@ -170,10 +181,6 @@ fn stars(mesh: &TriMesh, places: &[[u64; 3]]) -> Vec<u64> {
     stars
 }
 
-pub fn is_usable(&[a, b, c]: &[u32; 3]) -> bool {
-    a != b && b != c && c != a
-}
-
 type Cell = [i32; 3];
 
 /// A mesh on the grid.
@@ -229,11 +236,6 @@ impl Quantised {
     }
 }
 
-/// The same triangle from its smallest corner on.
-pub fn turned<T: Copy + Ord>([a, b, c]: [T; 3]) -> [T; 3] {
-    [a, b, c].min([b, c, a]).min([c, a, b])
-}
-
 /// Triangles in an order that depends on nothing but the multiset of oriented triangles: each begins with
 /// the corner that makes it smallest.
 fn sorted(triangles: impl Iterator<Item = [Cell; 3]>) -> Vec<[Cell; 3]> {
@@ -255,6 +257,8 @@ fn num_missing(wanted: &[[Cell; 3]], found: &[[Cell; 3]]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::bar::Bar;
+    use crate::cli::screen::Screen;
 
     fn bumpy_grid() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         let n = 12_u32;
@@ -273,7 +277,15 @@ mod tests {
     fn verify(mesh: &TriMesh, quantization_bits: u32, encoded: &Encoded) -> Result<(), Failure> {
         let mut options = EncodeOptions::default();
         options.quantization_bits = quantization_bits;
-        super::verify(mesh, &Attributes::default(), &options, encoded)
+        verify_with(mesh, &options, encoded)
+    }
+
+    fn verify_with(mesh: &TriMesh, options: &EncodeOptions, encoded: &Encoded) -> Result<(), Failure> {
+        let mut file = MeshFile::default();
+        file.mesh = mesh.clone();
+        let bar = Bar::new(&Screen::default(), false);
+        let [part] = bar.split([("verifying", 1.0)]);
+        super::verify(&file, options, encoded, part)
     }
 
     fn encoded(mesh: &TriMesh) -> Encoded {
@@ -289,14 +301,12 @@ mod tests {
         let mut options = EncodeOptions::default();
         let without = encoded(&mesh);
         (options.lossless, options.keep_order) = (true, true);
-        assert!(super::verify(&mesh, &Attributes::default(), &options, &without).is_err());
+        assert!(verify_with(&mesh, &options, &without).is_err());
         (options.keep_isolated, options.keep_degenerate) = (true, true);
-        super::verify(&mesh, &Attributes::default(), &options, &lwc::encode(&mesh, &options).unwrap())
-            .unwrap();
+        verify_with(&mesh, &options, &lwc::encode(&mesh, &options).unwrap()).unwrap();
         options.keep_order = false;
-        super::verify(&mesh, &Attributes::default(), &options, &lwc::encode(&mesh, &options).unwrap())
-            .unwrap();
-        assert!(super::verify(&mesh, &Attributes::default(), &options, &without).is_err());
+        verify_with(&mesh, &options, &lwc::encode(&mesh, &options).unwrap()).unwrap();
+        assert!(verify_with(&mesh, &options, &without).is_err());
     }
 
     #[test]

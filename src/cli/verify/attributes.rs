@@ -1,6 +1,6 @@
 //! `lwc encode --verify`: the values of attributes are back, to half a step of their bits.
 
-use super::verify::{is_usable, turned};
+use super::triangle::{is_usable, turned};
 use lwc::mesh::{Attribute, Attributes, Domain, Semantic};
 use lwc::{Decoder, EncodeOptions, TriMesh};
 

@@ -1,6 +1,6 @@
 //! `lwc encode --lossless --verify`: positions and attributes are back bit for bit.
 
-use super::verify::is_usable;
+use super::triangle::{is_usable, turned};
 use lwc::mesh::{Attribute, Attributes, Domain};
 use lwc::{EncodeOptions, TriMesh};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -85,7 +85,7 @@ impl Hashes {
 
     fn sort(&mut self) {
         self.vertices.sort_unstable();
-        self.triangles.iter_mut().for_each(|t| *t = super::verify::turned(*t));
+        self.triangles.iter_mut().for_each(|t| *t = turned(*t));
         self.triangles.sort_unstable();
     }
 }

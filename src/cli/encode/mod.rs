@@ -1,0 +1,146 @@
+//! `lwc encode`: a mesh file becomes a stream.
+
+pub mod args;
+mod report;
+
+use super::bar::Part;
+use super::exit::Failure;
+use super::input::{read_for_stream, read_terrain};
+use super::input_file::{self, holds_stream};
+use super::output::Destination;
+use super::quantity::counted;
+use super::ui::Ui;
+use super::verify;
+use anyhow::Context;
+use args::Encode;
+use lwc::io::{Format, MeshFile};
+use lwc::{EncodeOptions, Encoded, RepairReport};
+use report::Report;
+use std::io;
+use std::path::Path;
+use std::time::Instant;
+
+/// Reads, encodes, verifies, writes, reports.
+pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
+    let destination = args.destination();
+    check_input(&args.input).with_context(|| args.input.display().to_string())?;
+    destination.check(Some(&args.input), false)?;
+    check_ending(&destination).with_context(|| destination.name())?;
+    let start = Instant::now();
+    let bar = ui.bar();
+    let verifying = if args.verify { 30.0 } else { 0.0 };
+    let [reading, encoding, verifying] =
+        bar.split([("reading", 5.0), ("encoding", 85.0), ("verifying", verifying)]);
+    let mut file = match args.terrain.options() {
+        Some(options) => read_terrain(&args.input, &options, &args.reading, reading, ui)?,
+        None => read_for_stream(&args.input, args.merge, &args.reading, reading, ui)?,
+    };
+    let left_out = if args.no_attributes { drop_attributes(&mut file) } else { Vec::new() };
+    let read_seconds = start.elapsed().as_secs_f64();
+
+    let name = args.input.display().to_string();
+    let start = Instant::now();
+    let (encoded, options) = encode(&file, args, encoding).with_context(|| name.clone())?;
+    let encode_seconds = start.elapsed().as_secs_f64();
+    warn_about(&name, &encoded, ui);
+
+    if args.verify {
+        let start = Instant::now();
+        verify::verify(&file, &options, &encoded, verifying).with_context(|| name.clone())?;
+        ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
+    }
+    drop(bar);
+    destination.write(|out| out.write_all(&encoded.bytes))?;
+    let (file, encoded) = (&file, &encoded);
+    let report = Report { args, file, left_out, encoded, destination, read_seconds, encode_seconds };
+    report.print(ui)
+}
+
+/// What would otherwise be told of its ending, or of the output beside it.
+fn check_input(path: &Path) -> Result<(), Failure> {
+    input_file::check(path)?;
+    if holds_stream(path) {
+        return Err(Failure::Input(io::Error::other("it is an lwc stream already")));
+    }
+    Ok(())
+}
+
+/// A stream under the ending of a mesh would be taken for one, and often replaces it.
+fn check_ending(destination: &Destination) -> Result<(), Failure> {
+    match destination {
+        Destination::File(path) if Format::from_path(path).is_some() => {
+            Err(Failure::Usage("the ending is that of a mesh, but the output is a stream (.lwc)".into()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Grids that are tried if all floats are kept and nobody says how fine it should be: coordinates may lie on
+/// one that the file does not tell.
+const LOSSLESS_BITS: [u32; 3] = [12, 15, 18];
+
+/// The smallest stream, and its options.
+fn encode(file: &MeshFile, args: &Encode, part: Part) -> Result<(Encoded, EncodeOptions), lwc::EncodeError> {
+    let encode = |options: EncodeOptions, part: Part| {
+        let progress = |now: lwc::Progress| part.set_stage(now.stage, now.fraction);
+        let encoded = lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress)?;
+        Ok((encoded, options))
+    };
+    let options = args.options();
+    if !args.lossless || args.quantization_bits.is_some() {
+        return encode(options, part);
+    }
+    let with = |i: usize| {
+        let mut options = options.clone();
+        options.quantization_bits = LOSSLESS_BITS[i];
+        let place = |i: usize| i as f64 / LOSSLESS_BITS.len() as f64;
+        encode(options, part.between(place(i), place(i + 1)))
+    };
+    let mut best = with(0)?;
+    for i in 1..LOSSLESS_BITS.len() {
+        let other = with(i)?;
+        if other.0.bytes.len() < best.0.bytes.len() {
+            best = other;
+        }
+    }
+    Ok(best)
+}
+
+/// Takes the attributes out of a file; returns their names.
+fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
+    let attributes = std::mem::take(&mut file.attributes);
+    let names = attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
+    names.chain(attributes.material_libraries.first().map(|_| "mtllib".to_owned())).collect()
+}
+
+/// Fewer vertices need no beginnings.
+const SMALL: u32 = 1000;
+
+fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
+    if let [base, rest @ ..] = encoded.info.passes()
+        && rest.is_empty()
+        && base.vertices >= SMALL
+    {
+        ui.note(
+            name,
+            "in one piece: nothing shows before the last byte has come; `--levels 99` keeps levels",
+        );
+    }
+    let RepairReport { degenerate_triangles, isolated_vertices, repeated_vertices } = encoded.repair;
+    if encoded.values_dropped > 0 {
+        let values = counted(encoded.values_dropped, "value", "values");
+        ui.warn(name, &format!("{values} of attributes left out: not finite"));
+    }
+    if degenerate_triangles > 0 {
+        let faces = counted(degenerate_triangles, "degenerate triangle", "degenerate triangles");
+        ui.warn(name, &format!("{faces} dropped"));
+    }
+    if isolated_vertices > 0 {
+        let vertices = counted(isolated_vertices, "vertex", "vertices");
+        ui.warn(name, &format!("{vertices} without triangles dropped"));
+    }
+    if repeated_vertices > 0 {
+        let vertices = counted(repeated_vertices, "vertex", "vertices");
+        ui.detail(name, &format!("{vertices} repeated to cut the mesh where it is not manifold"));
+    }
+}

@@ -1,0 +1,120 @@
+//! What is told of a stream that was written.
+
+use super::args::Encode;
+use crate::cli::output::{Destination, print_json};
+use crate::cli::passes;
+use crate::cli::quantity::counted;
+use crate::cli::ui::Ui;
+use lwc::Encoded;
+use lwc::io::MeshFile;
+use serde_json::{Value, json};
+use std::io::{self, Write};
+
+/// What is told at the end.
+pub struct Report<'a> {
+    pub args: &'a Encode,
+    pub file: &'a MeshFile,
+    /// Attributes that were not wanted.
+    pub left_out: Vec<String>,
+    pub encoded: &'a Encoded,
+    pub destination: Destination,
+    pub read_seconds: f64,
+    pub encode_seconds: f64,
+}
+
+impl Report<'_> {
+    pub fn print(&self, ui: &Ui) -> anyhow::Result<()> {
+        if self.args.json {
+            let to_file = self.destination != Destination::Stdout;
+            let out: Box<dyn Write> =
+                if to_file { Box::new(io::stdout().lock()) } else { Box::new(io::stderr()) };
+            print_json(out, &self.to_json())?;
+        } else if self.destination != Destination::Stdout || ui.is_verbose() {
+            ui.say(&self.summary());
+            if ui.is_verbose() {
+                passes::print(io::stderr(), &self.encoded.info, self.num_bytes())?;
+            }
+        }
+        Ok(())
+    }
+
+    fn num_bytes(&self) -> u64 {
+        self.encoded.bytes.len() as u64
+    }
+
+    /// Bytes of the input file as it is, compressed or not.
+    fn input_bytes(&self) -> Option<u64> {
+        Some(std::fs::metadata(&self.args.input).ok()?.len()).filter(|&bytes| bytes > 0)
+    }
+
+    fn ratio(&self) -> Option<f64> {
+        Some(self.num_bytes() as f64 / self.input_bytes()? as f64)
+    }
+
+    /// Two lines.
+    fn summary(&self) -> String {
+        let (info, bytes, repair) = (&self.encoded.info, self.num_bytes(), &self.encoded.repair);
+        let finest = info.passes().last();
+        let vertices = finest.map_or(0, |p| p.vertices as usize - repair.repeated_vertices);
+        let ratio = self.ratio().map(|r| format!(", {:.1} % of {}", 100.0 * r, self.args.input.display()));
+        format!(
+            "{}: {}, {}, {} on the base mesh, {} bits\n{bytes} bytes, {:.2} bits per vertex{}, {:.2} s{}",
+            self.destination.name(),
+            counted(vertices, "vertex", "vertices"),
+            counted(finest.map_or(0, |p| p.triangles as usize), "triangle", "triangles"),
+            counted(info.finest_level() as usize, "level", "levels"),
+            info.quantization_bits(),
+            passes::bits_per_vertex(bytes, info),
+            ratio.unwrap_or_default(),
+            self.read_seconds + self.encode_seconds,
+            if self.args.verify { ", verified" } else { "" },
+        )
+    }
+
+    fn to_json(&self) -> Value {
+        let (args, info, mesh) = (self.args, &self.encoded.info, &self.file.mesh);
+        let (read, repair) = (&self.file.report, &self.encoded.repair);
+        let finest = info.passes().last();
+        let output = match &self.destination {
+            Destination::Stdout => None,
+            Destination::File(path) => Some(path.display().to_string()),
+        };
+        json!({
+            "input": args.input.display().to_string(),
+            "input_bytes": self.input_bytes(),
+            "input_vertices": mesh.num_vertices(),
+            "input_triangles": mesh.num_triangles(),
+            "output": output,
+            "bytes": self.num_bytes(),
+            "bits_per_vertex": passes::bits_per_vertex(self.num_bytes(), info),
+            "ratio": self.ratio(),
+            "vertices": finest.map(|p| p.vertices),
+            "triangles": finest.map(|p| p.triangles),
+            "levels": info.finest_level(),
+            "quantization_bits": info.quantization_bits(),
+            "descriptor": args.scale.descriptor.name(),
+            "rings": args.scale.window.rings,
+            "radius": args.scale.window.radius,
+            "growth": args.growth,
+            "partition": args.partition.name(),
+            "optimize": args.optimize.name(),
+            "profile": info.profile().name(),
+            "effort": args.effort,
+            "steps_per_edge": args.steps_per_edge,
+            "read_seconds": self.read_seconds,
+            "encode_seconds": self.encode_seconds,
+            "verified": args.verify,
+            "polygons_triangulated": read.polygons_triangulated,
+            "faces_skipped": read.faces_skipped,
+            "corners_welded": read.corners_welded,
+            "points_left_out": read.points_left_out,
+            "ignored": self.file.report.ignored.iter().chain(&self.left_out).collect::<Vec<_>>(),
+            "attributes": passes::attributes_to_json(info, &[]),
+            "degenerate_triangles": repair.degenerate_triangles,
+            "isolated_vertices": repair.isolated_vertices,
+            "repeated_vertices": repair.repeated_vertices,
+            "passes": passes::to_json(info, self.num_bytes()),
+            "trailing": passes::trailing_to_json(info, self.num_bytes()),
+        })
+    }
+}

@@ -1,0 +1,15 @@
+//! What all payloads have in common.
+
+use crate::passes::Malformed;
+
+/// A payload with as many zeros behind it as a decoder wants to believe that it holds so many things.
+pub(super) fn padded(mut payload: Vec<u8>, count: u64, most_per_byte: u64) -> Vec<u8> {
+    let least = count.div_ceil(most_per_byte).saturating_sub(1);
+    payload.resize(payload.len().max(least as usize), 0);
+    payload
+}
+
+/// The codes fail on malformed payloads only, and an encoder reads none.
+pub(super) fn expect_sound<T>(result: Result<T, Malformed>) -> T {
+    result.unwrap_or_else(|e| unreachable!("the encoder made a stream it refuses: {}", e.0))
+}

@@ -1,0 +1,43 @@
+//! A mesh that was in a file, and what reading and writing leave out.
+
+use crate::mesh::{Attributes, TriMesh};
+
+/// What a file held: the mesh, and what was changed or left out on the way.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MeshFile {
+    /// Vertices in the order of the file, unused ones included; triangles in the order of the file.
+    pub mesh: TriMesh,
+    /// Normals, texture coordinates, colours, materials and whatever else the file has; valid for the mesh.
+    pub attributes: Attributes,
+    /// What was changed or left out.
+    pub report: ReadReport,
+}
+
+/// What a reader changed or left out. Degenerate triangles (a repeated index) are *not* left out.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ReadReport {
+    /// Faces of four or more corners that were cut into the fan of their first corner.
+    pub polygons_triangulated: usize,
+    /// Faces of fewer than three corners, left out.
+    pub faces_skipped: usize,
+    /// STL and glTF: corners or vertices that were joined with an earlier one at exactly the same place.
+    pub corners_welded: usize,
+    /// LAS only: points that are no vertices, because they lie above another, are not the last return, or were
+    /// thinned out.
+    pub points_left_out: usize,
+    /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
+    /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`).
+    pub ignored: Vec<String>,
+}
+
+/// What a writer left out because the format has no place for it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct WriteReport {
+    /// Names of attributes that were left out.
+    pub ignored: Vec<String>,
+    /// Names of attributes that do not have a value everywhere, in a format that must: zeros were written.
+    pub zeroed: Vec<String>,
+}

@@ -1,0 +1,178 @@
+//! Meshes from files of any format.
+
+use super::error::ReadError;
+use super::format::Format;
+#[cfg(feature = "gltf")]
+use super::gltf;
+#[cfg(feature = "las")]
+use super::las::{self, TerrainOptions};
+use super::mesh_file::MeshFile;
+#[cfg(feature = "gltf")]
+use super::scene::Scene;
+use super::source::Source;
+use super::unpack::ReadOptions;
+use super::{obj, ply, stl};
+use std::path::Path;
+
+/// Reads a mesh file; the ending of `path` says which format (see [`Format::from_path`]).
+///
+/// A well-formed file without vertices or faces is a mesh without vertices or faces, not an error. The meshes
+/// of a glTF scene become one, each in its place. Buffers of glTF in other files are read too, if they are in
+/// the folder of `path` or below.
+///
+/// # Errors
+/// If the file cannot be read, its ending is unknown, it is larger than [`MAX_FILE_BYTES`](super::MAX_FILE_BYTES), or it is
+/// damaged.
+/// The error names the place in the file and the cause; the caller knows the file's name and puts it in front.
+pub fn read(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
+    ReadOptions::default().read(path)
+}
+
+/// Reads a file of several meshes, each in its own coordinates; one of a format without scenes is one mesh in
+/// its place.
+///
+/// # Errors
+/// As [`read`].
+#[cfg(feature = "gltf")]
+pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene, ReadError> {
+    ReadOptions::default().read_scene(path)
+}
+
+/// Reads a point cloud (`.las`, `.laz`, also `.zst`) and triangulates it in the plane.
+///
+/// # Errors
+/// As [`read`]; the ending of any other format is an unknown one here.
+#[cfg(feature = "las")]
+pub fn read_terrain(path: impl AsRef<Path>, options: &TerrainOptions) -> Result<MeshFile, ReadError> {
+    ReadOptions::default().read_terrain(path, options)
+}
+
+impl ReadOptions {
+    /// As [`read()`].
+    ///
+    /// # Errors
+    /// As [`read()`].
+    pub fn read(&self, path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
+        self.read_with_progress(path, &|_| ())
+    }
+
+    /// As [`read()`], telling `progress` again and again which share of the work is done, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`read()`].
+    pub fn read_with_progress(
+        &self,
+        path: impl AsRef<Path>,
+        progress: &dyn Fn(f64),
+    ) -> Result<MeshFile, ReadError> {
+        let path = path.as_ref();
+        let (source, format) = self.open(path, progress)?;
+        let file = match format {
+            #[cfg(feature = "gltf")]
+            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent())?.merge()?,
+            _ => read_source(source, format)?,
+        };
+        progress(1.0);
+        Ok(file)
+    }
+
+    /// As [`read_scene()`].
+    ///
+    /// # Errors
+    /// As [`read()`].
+    #[cfg(feature = "gltf")]
+    pub fn read_scene(&self, path: impl AsRef<Path>) -> Result<Scene, ReadError> {
+        self.read_scene_with_progress(path, &|_| ())
+    }
+
+    /// As [`read_scene()`], telling `progress` again and again which share of the work is done, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`read()`].
+    #[cfg(feature = "gltf")]
+    pub fn read_scene_with_progress(
+        &self,
+        path: impl AsRef<Path>,
+        progress: &dyn Fn(f64),
+    ) -> Result<Scene, ReadError> {
+        let path = path.as_ref();
+        let (source, format) = self.open(path, progress)?;
+        let scene = match format {
+            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent())?,
+            _ => read_source(source, format)?.into(),
+        };
+        progress(1.0);
+        Ok(scene)
+    }
+
+    /// As [`read_terrain()`].
+    ///
+    /// # Errors
+    /// As [`read_terrain()`].
+    #[cfg(feature = "las")]
+    pub fn read_terrain(
+        &self,
+        path: impl AsRef<Path>,
+        options: &TerrainOptions,
+    ) -> Result<MeshFile, ReadError> {
+        self.read_terrain_with_progress(path, options, &|_| ())
+    }
+
+    /// As [`read_terrain()`], telling `progress` again and again which share of the work is done, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`read_terrain()`].
+    #[cfg(feature = "las")]
+    pub fn read_terrain_with_progress(
+        &self,
+        path: impl AsRef<Path>,
+        options: &TerrainOptions,
+        progress: &dyn Fn(f64),
+    ) -> Result<MeshFile, ReadError> {
+        let (source, format) = self.open(path.as_ref(), progress)?;
+        let file = match format {
+            Format::Las | Format::Laz => las::read(&source.into_bytes()?, options)?,
+            _ => return Err(ReadError::UnknownEnding),
+        };
+        progress(1.0);
+        Ok(file)
+    }
+}
+
+/// As [`read_terrain`], from the (uncompressed) bytes of a file.
+///
+/// # Errors
+/// As [`read`].
+#[cfg(feature = "las")]
+pub fn read_terrain_bytes(bytes: &[u8], options: &TerrainOptions) -> Result<MeshFile, ReadError> {
+    las::read(bytes, options)
+}
+
+/// Reads a mesh from the (uncompressed) bytes of a file. Nothing else is read: glTF must have its buffers
+/// inside.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
+    match format {
+        #[cfg(feature = "gltf")]
+        Format::Glb | Format::Gltf => gltf::read(bytes, None)?.merge(),
+        #[cfg(feature = "las")]
+        Format::Las | Format::Laz => las::read(bytes, &TerrainOptions::default()),
+        _ => read_source(Source::of_bytes(bytes), format),
+    }
+}
+
+/// Reads what need not be in memory as a whole; all else is.
+fn read_source(mut source: Source, format: Format) -> Result<MeshFile, ReadError> {
+    let found = match format {
+        Format::Obj => obj::read(&mut source),
+        Format::Ply => ply::read(&mut source),
+        Format::Stl => stl::read(&mut source),
+        #[cfg(any(feature = "gltf", feature = "las"))]
+        _ => return read_bytes(&source.into_bytes()?, format),
+    };
+    // A fault of the disk is not one of the mesh.
+    source.finish()?;
+    found
+}
