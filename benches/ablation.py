@@ -93,7 +93,7 @@ PARTS = {
         (PARTITION, r"thinning\.tolerance,", "f64::INFINITY,"),
     ],
     "Compensation: coarse meshes shown where they shrink less": [
-        ("src/encoder/write.rs", r"let compensation = if is_last \{", "let compensation = if is_last || true {"),
+        ("src/encoder/pass_writer.rs", r"let compensation = if is_last \{", "let compensation = if is_last || true {"),
     ],
 }
 

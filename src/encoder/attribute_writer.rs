@@ -1,4 +1,4 @@
-//! The values of attributes behind each pass.
+//! The values of attributes after each pass.
 
 use super::attributes::Quantised;
 use super::coarsen::Hierarchy;

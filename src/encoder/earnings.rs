@@ -1,13 +1,13 @@
 //! Bytes for what a decoder has to do: a mesh may be coded in fewer bytes than the work of it is allowed to take
 //! (`format/SPEC.md`, section 10). Zeros make up for that.
 
-use super::write::WrittenPass;
+use super::frame::WrittenPass;
 use crate::decoder::{TrailingKind, forecast};
 use crate::passes::attribute::Declarations;
 use crate::passes::cost::{self, Counts, Ledger};
 
-/// Appends zeros to the payloads of passes until each has earned what it costs by its end with the `values` behind it, and
-/// the last one also what the chunks behind it cost. `loose`: vertices and faces in these that no pass brings.
+/// Appends zeros to the payloads of passes until each has earned what it costs by its end, with the `values` after it.
+/// The last one also earns what the chunks after it cost. `loose`: vertices and faces in these that no pass brings.
 pub(super) fn pad(
     passes: &mut [WrittenPass],
     values: &[Vec<u8>],
@@ -22,8 +22,8 @@ pub(super) fn pad(
         ledger.cost += cost::pass(&pass.row, counts, channels);
         counts = counts.after(&pass.row);
         ledger.cost += pass.glue.as_ref().map_or(0, |_| cost::glue(counts));
-        let beside = values.get(i).map_or(0, Vec::len) + pass.glue.as_ref().map_or(0, Vec::len);
-        ledger.bytes += (pass.payload.len() + beside) as u64;
+        let companions = values.get(i).map_or(0, Vec::len) + pass.glue.as_ref().map_or(0, Vec::len);
+        ledger.bytes += (pass.payload.len() + companions) as u64;
         if i + 1 == num_passes {
             ledger.cost += cost::loose(loose);
             for (kind, payload) in trailing {

@@ -5,6 +5,7 @@ use crate::decoder::StreamInfo;
 use crate::descriptors::{Descriptor, FeatureChoice, Window};
 use crate::error::EncodeError;
 use crate::mesh::repair::RepairReport;
+use crate::mesh::{Attributes, TriMesh};
 use crate::simplification::hierarchy::MAX_LEVELS;
 use crate::simplification::partition::Partition;
 use crate::simplification::vertex_selection::Optimize;
@@ -19,7 +20,7 @@ pub struct EncodeOptions {
     pub window: Window,
     /// Factor of the radius from each level to the next coarser one. Default 1.5.
     pub growth: f64,
-    /// Attributes that the descriptor sees beside positions, if it is pca or pca-qem. Default none.
+    /// Attributes that the descriptor sees as well as positions, if it is pca or pca-qem. Default none.
     pub descriptor_attributes: Vec<FeatureChoice>,
     /// Bits per coordinate, 1 to 30. Default 12.
     pub quantization: u32,
@@ -164,6 +165,14 @@ impl EncodeOptions {
         }
         Ok(())
     }
+}
+
+/// What is encoded, and how.
+#[derive(Clone, Copy)]
+pub(super) struct Input<'a> {
+    pub(super) mesh: &'a TriMesh,
+    pub(super) attributes: &'a Attributes,
+    pub(super) options: &'a EncodeOptions,
 }
 
 /// A way down that is tried.

@@ -1,24 +1,25 @@
 //! Which pass comes when, and with how many bits.
 
 use super::coarsen::Hierarchy;
+use super::options::EncodeOptions;
 
-/// One pass of the plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step {
-    /// Brings back the record of this index.
-    Split(usize),
-    Refine,
-}
-
-/// Order of the passes after the base mesh.
+/// The precision of each pass. Splits bring back the records of the hierarchy, coarsest first.
 pub(super) struct Schedule {
     pub(super) base_precision: u32,
-    pub(super) steps: Vec<Step>,
+    /// Number of refinements after the base mesh, then after each split.
+    pub(super) refinements: Vec<u32>,
 }
 
 /// A bit then buys about as much in a refinement as in a split: a split costs some 5 bits per vertex
 /// there is and takes 2 dB off the error, a refinement 2 bits and takes 6 dB off that of rounding.
 const ROUNDING_SHARE: f64 = 0.25;
+
+/// The schedules of a hierarchy that the options try. Without a split there is one only.
+pub(super) fn tried(hierarchy: &Hierarchy, options: &EncodeOptions) -> impl Iterator<Item = Schedule> {
+    let is_one = options.steps_per_edge.is_some() || hierarchy.records.is_empty();
+    let tried = if is_one { &[None] } else { options.steps_tried() };
+    tried.iter().map(|&steps| plan(hierarchy, options.quantization, options.steps_per_edge.or(steps)))
+}
 
 /// Each split comes with the precision its level needs; what is missing then follows the last split.
 /// Without a split there is nothing to come later for.
@@ -26,7 +27,7 @@ const ROUNDING_SHARE: f64 = 0.25;
 /// With `steps_per_edge` a level needs as many bits as make its mean edge that many grid steps long.
 /// Else it needs as many as keep the error of rounding (a twelfth of the squared step) below
 /// [`ROUNDING_SHARE`] of that of the level's shape.
-pub(super) fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: Option<f64>) -> Schedule {
+fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: Option<f64>) -> Schedule {
     let needed = |level: usize| {
         let hidden = match steps_per_edge {
             Some(steps) => libm::log2((hierarchy.mean_edges[level] / steps).max(1.0)),
@@ -37,14 +38,12 @@ pub(super) fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: Option
     let num_levels = hierarchy.records.len();
     let base_precision = if num_levels > 0 { needed(0) } else { precision };
     let mut current = base_precision;
-    let mut steps = Vec::new();
-    for level in 1..=num_levels {
-        while current < needed(level) {
-            steps.push(Step::Refine);
-            current += 1;
-        }
-        steps.push(Step::Split(num_levels - level));
-    }
-    steps.extend((current..precision).map(|_| Step::Refine));
-    Schedule { base_precision, steps }
+    let refinements_after = |level: usize| {
+        let wanted = if level < num_levels { needed(level + 1) } else { precision };
+        let before = current;
+        current = current.max(wanted);
+        current - before
+    };
+    let refinements = (0..=num_levels).map(refinements_after).collect();
+    Schedule { base_precision, refinements }
 }
