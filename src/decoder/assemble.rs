@@ -232,9 +232,9 @@ const VALUE_PER_COMPONENT: u64 = 60;
 const ORDER_PER_VERTEX: u64 = 24;
 const ORDER_PER_FACE: u64 = 48;
 
-/// A chunk beside the passes, and what it tells of.
+/// A chunk that follows a pass, and what it tells of.
 #[derive(Clone, Copy)]
-pub(super) struct Beside<'a> {
+pub(super) struct NewChunk<'a> {
     pub(super) payload: &'a [u8],
     pub(super) mesh: &'a GridMesh,
     pub(super) grid: &'a Grid,
@@ -245,7 +245,7 @@ pub(super) struct Beside<'a> {
     pub(super) work: u64,
 }
 
-impl Beside<'_> {
+impl NewChunk<'_> {
     fn check_memory(&self, more: u64) -> Result<(), DecodeError> {
         Limits::check("memory", self.used + more, self.limits.max_memory)
     }
@@ -263,14 +263,14 @@ fn units_on_surface(kind: u8, mesh: &GridMesh, declared: Option<&Declarations>) 
 }
 
 impl Extras {
-    /// Takes a chunk that stands behind a pass, or is skipped, and returns the units of work that this took.
+    /// Takes a chunk that follows a pass, or is skipped, and returns the units of work that this took.
     ///
     /// # Errors
     /// If it names something that no encoder writes, does not fit what is there, or is beyond a limit.
     pub(super) fn read(
         &mut self,
         kind: u8,
-        chunk: Beside,
+        chunk: NewChunk,
         attributes: Option<&AttributeDecoder>,
     ) -> Result<u64, Refused> {
         let declared = attributes.map(|attributes| &attributes.declarations);
@@ -292,7 +292,7 @@ impl Extras {
     }
 
     /// Joins vertices that have come since the last time.
-    fn read_glue(&mut self, chunk: Beside) -> Result<(), Refused> {
+    fn read_glue(&mut self, chunk: NewChunk) -> Result<(), Refused> {
         chunk.check_memory(GLUE_PER_VERTEX * chunk.mesh.positions.len() as u64)?;
         let known = self.roots.len();
         let mut coder = RangeDecoder::new(chunk.payload);
@@ -304,8 +304,8 @@ impl Extras {
     }
 
     /// Takes what lies loose beside the finest surface.
-    fn read_loose(&mut self, chunk: Beside) -> Result<(), Refused> {
-        let Beside { payload, mesh, grid, limits, .. } = chunk;
+    fn read_loose(&mut self, chunk: NewChunk) -> Result<(), Refused> {
+        let NewChunk { payload, mesh, grid, limits, .. } = chunk;
         let mut coder = RangeDecoder::new(payload);
         let counts = isolated_and_degenerate::code_counts(&mut coder, payload.len(), None)?;
         let num_joined = self.joined(mesh.positions.len()).first.len();
@@ -319,8 +319,8 @@ impl Extras {
     }
 
     /// Takes the exact positions.
-    fn read_exact(&mut self, chunk: Beside) -> Result<(), Refused> {
-        let Beside { payload, mesh, grid, .. } = chunk;
+    fn read_exact(&mut self, chunk: NewChunk) -> Result<(), Refused> {
+        let NewChunk { payload, mesh, grid, .. } = chunk;
         let ladders = exact::read_ladders(payload).ok_or(Malformed("the kinds of exact numbers"))?;
         let cells = self.of_vertices(&self.joined(mesh.positions.len()), &mesh.positions, |cell| cell);
         chunk.check_memory(EXACT_PER_VERTEX * cells.len() as u64)?;
@@ -330,8 +330,8 @@ impl Extras {
     }
 
     /// Takes values of attributes: exact ones, and those of isolated vertices and degenerate faces.
-    fn read_values(&mut self, chunk: Beside, attributes: &AttributeDecoder) -> Result<(), Refused> {
-        let Beside { payload, mesh, .. } = chunk;
+    fn read_values(&mut self, chunk: NewChunk, attributes: &AttributeDecoder) -> Result<(), Refused> {
+        let NewChunk { payload, mesh, .. } = chunk;
         let triangles = &mesh.surface.triangles;
         let list = &attributes.declarations.list;
         let (ladders, used) =
@@ -359,7 +359,7 @@ impl Extras {
     }
 
     /// Takes the order of the file.
-    fn read_order(&mut self, chunk: Beside) -> Result<(), Refused> {
+    fn read_order(&mut self, chunk: NewChunk) -> Result<(), Refused> {
         let mesh = chunk.mesh;
         let joined = self.joined(mesh.positions.len());
         let num_vertices = joined.first.len() + self.loose.as_ref().map_or(0, |loose| loose.cells.len());

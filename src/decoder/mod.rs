@@ -7,11 +7,17 @@ pub(crate) mod forecast;
 mod frame;
 mod head;
 mod level_mesh;
+mod options;
 mod passes;
 mod push;
 mod refused;
 mod running;
+mod snapshot;
+mod stream;
+mod update;
 
 pub use frame::{AttributeInfo, PassInfo, PassKind, StreamInfo, TrailingInfo, TrailingKind};
 pub use level_mesh::{LevelMesh, PositionUpdater};
-pub use push::{DecodeOptions, Decoder, Step, Update, decode};
+pub use options::DecodeOptions;
+pub use push::{Decoder, decode};
+pub use update::{Step, Update};
