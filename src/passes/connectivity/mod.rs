@@ -1,8 +1,9 @@
 //! Where the odd vertices of a level go (`format/SPEC.md`, section 7.2): the faces of the coarse
 //! mesh are walked from gate to gate and grouped into patches.
 
+mod polygon;
+
 use super::patch::{CLOSED, Patches};
-use super::polygon::{FITS, Fit, Polygon, Triangle};
 use super::work_budget::{SWEPT_PER_UNIT, WorkBudget};
 use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
@@ -13,6 +14,7 @@ use crate::mesh::Surface;
 use crate::mesh::ears::MAX_VALENCE;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::util::simd4::Cell;
+use polygon::{FITS, Fit, Polygon, Triangle};
 use std::collections::{HashMap, VecDeque};
 
 /// What the encoder wants written, in the numbering of the coarse mesh.
