@@ -6,13 +6,20 @@
 
 mod around;
 pub(crate) mod declaration;
+mod faces;
 mod forecast;
+mod inheritance;
 mod layer;
 pub(crate) mod octahedron;
+mod row_coder;
 mod rows;
+mod seams;
+mod star;
+mod truth;
+mod wedges;
 
 pub(crate) use declaration::{Coding, Declaration, Declarations};
-#[cfg(feature = "encoder")]
-pub(crate) use layer::Truth;
 pub(crate) use layer::{Brought, Desk, Layer};
 pub(crate) use rows::Rows;
+#[cfg(feature = "encoder")]
+pub(crate) use truth::Truth;
