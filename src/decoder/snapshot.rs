@@ -113,7 +113,7 @@ impl<'a> Snapshot<'a> {
             return None;
         }
         // Two copies that take as much again as the mesh itself.
-        let held = self.0.memory_besides() + 2 * passes.memory_for(pass);
+        let held = self.0.held_memory() + 2 * passes.memory_for(pass);
         passes.check_limits(pass, &options.limits, held).ok()?;
         let (mesh, patches) = passes.mesh_with_cut(pass, payload)?;
         Some(CutMesh { pass, mesh, patches })

@@ -69,7 +69,7 @@ impl StreamingDecoder {
         if self.is_complete() {
             return Ok(());
         }
-        let needed = self.memory_besides() - self.frames.memory() + self.frames.memory_with(bytes.len());
+        let needed = self.held_memory() - self.frames.memory() + self.frames.memory_with(bytes.len());
         let checked = Limits::check("memory", needed, self.options.limits.max_memory);
         checked.inspect_err(|_| self.has_failed = true)?;
         // The payload of a chunk that is half done must stay where it is.
@@ -106,11 +106,12 @@ impl StreamingDecoder {
         forecast::allowed(&self.options.limits, self.frames.position()).saturating_sub(self.work_done)
     }
 
+    /// Goes on with what is half done, then takes chunk after chunk.
     fn try_step(&mut self, work: &mut WorkBudget) -> Result<Step, DecodeError> {
         if let Some((running, chunk)) = self.running.take() {
             return self.advance_pass(running, chunk, work);
         }
-        if !self.finish_attributes(work)? {
+        if !self.resume_attributes(work)? {
             return Ok(Step::Unfinished);
         }
         self.read_info()?;
@@ -138,7 +139,7 @@ impl StreamingDecoder {
     }
 
     /// Goes on with attributes that are half done, if there are any; false if they are not finished yet.
-    fn finish_attributes(&mut self, work: &mut WorkBudget) -> Result<bool, DecodeError> {
+    fn resume_attributes(&mut self, work: &mut WorkBudget) -> Result<bool, DecodeError> {
         match self.running_attributes.take().filter(|_| ASSETS) {
             Some(chunk) => self.advance_attributes(chunk, work),
             None => Ok(true),
@@ -166,7 +167,7 @@ impl StreamingDecoder {
     }
 
     /// Bytes of memory that are held, without the mesh and its attributes.
-    pub(super) fn memory_besides(&self) -> u64 {
+    pub(super) fn held_memory(&self) -> u64 {
         let extras = if ASSETS { self.extras.memory() } else { 0 };
         self.frames.memory() + self.head.memory() + extras
     }
@@ -174,7 +175,7 @@ impl StreamingDecoder {
     /// Begins the next pass.
     fn begin_pass(&mut self, chunk: Chunk, work: &mut WorkBudget) -> Result<Step, DecodeError> {
         let pass = self.next_pass().ok_or(malformed("a pass that was not announced", &chunk))?;
-        let held = self.memory_besides() + self.memory_of_attributes(pass);
+        let held = self.held_memory() + self.memory_of_attributes(pass);
         self.passes.check_limits(pass, &self.options.limits, held)?;
         let running = Running::new(self.frames.payload(&chunk), pass, self.passes.profile);
         self.advance_pass(running.ok_or(malformed("a pass of other streams", &chunk))?, chunk, work)
@@ -289,7 +290,7 @@ impl StreamingDecoder {
             let used = memory_of_mesh + self.extras.memory();
             return self.head.take_materials(Source { chunk, frames: &self.frames, limits, used });
         }
-        let used = self.memory_besides() + memory_of_mesh;
+        let used = self.held_memory() + memory_of_mesh;
         let left = self.work_left().saturating_sub(work.done());
         let (mesh, grid) = (&self.passes.mesh, &info.grid);
         let new = NewChunk { payload, mesh, grid, limits, used, work: left };

@@ -5,10 +5,10 @@ use super::grid_surface::GridSurface;
 use super::number_format::cheapest_scale;
 use super::options::{EncodeOptions, Input};
 use super::values::ExactValues;
-use super::{expect_sound, padded};
+use super::{attributes, expect_sound, padded};
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::MAX_VERTICES_PER_BYTE;
-use crate::decoder::assemble::Extras;
+use crate::decoder::assemble::{Extras, Joined};
 use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::surface::turns;
 use crate::passes::attribute::Rows;
@@ -50,18 +50,11 @@ impl Original<'_> {
         if self.says_nothing() {
             return Vec::new();
         }
-        let GridSurface { ordered, source, loose: of_mesh, .. } = self.on_grid;
-        let Input { mesh, options, .. } = self.input;
+        let options = self.input.options;
         let mut extras = Extras { roots, ..Extras::default() };
         let joined = extras.joined(surface.vertex_source.len());
-        // Vertex of the mesh for each vertex of the joined one.
-        let on_surface = joined.first.iter().map(|&v| {
-            let cut = surface.vertex_source[v as usize];
-            ordered.vertex_source[source[cut as usize] as usize]
-        });
-        let vertices: Vec<u32> = on_surface.chain(of_mesh.vertices.iter().copied()).collect();
+        let vertices = self.vertices(surface, &joined);
         let mut chunks = Vec::new();
-
         let (loose, loose_corners) = self.loose(&vertices);
         let num_joined = joined.first.len();
         if !loose.cells.is_empty() || !loose.faces.is_empty() {
@@ -72,24 +65,11 @@ impl Original<'_> {
             chunks.push((kind::EXACT, self.write_positions(&vertices)));
         }
         let triangles = &surface.mesh.surface.triangles;
-        let on_surface = triangles.iter().zip(surface.face_source).map(|(t, &f)| {
-            let corner = ordered.corner_source[f as usize];
-            let first = vertices[joined.place[t[0] as usize] as usize];
-            turned_to(mesh.triangles()[(corner / 3) as usize], corner, first)
-        });
-        let corners: Vec<u32> = on_surface.chain(loose_corners).collect();
-        let list = &self.quantised.list;
-        if !list.is_empty() {
-            let elements: Vec<Elements> = list
-                .iter()
-                .zip(&surface.rows)
-                .map(|(one, rows)| extras.elements(&joined, triangles, rows, one.declaration.domain))
-                .collect();
-            let sources = super::attributes::Elements { vertices: &vertices, corners: &corners };
-            chunks.extend(
-                self.exact_values().payload(&elements, sources).map(|payload| (kind::VALUES, payload)),
-            );
-        }
+        let mut corners = self.corners(surface, &joined, &vertices);
+        corners.extend(loose_corners);
+        let of_mesh = attributes::Elements { vertices: &vertices, corners: &corners };
+        let values = self.write_values(surface, &extras, &joined, of_mesh);
+        chunks.extend(values.map(|payload| (kind::VALUES, payload)));
         if options.keep_order {
             let faces = extras.triangles(&joined, triangles);
             debug_assert_eq!(faces.len(), corners.len());
@@ -98,16 +78,32 @@ impl Original<'_> {
         chunks
     }
 
-    fn exact_values(&self) -> ExactValues<'_> {
-        let Input { attributes, options, .. } = self.input;
-        ExactValues { attributes, quantised: self.quantised, is_lossless: options.lossless }
-    }
-
     /// Whether the surface alone is all that is wanted.
     fn says_nothing(&self) -> bool {
         let has_loose = self.on_grid.loose.len() > 0;
         let EncodeOptions { lossless, keep_order, .. } = *self.input.options;
         !(has_loose || lossless || keep_order || !self.quantised.list.is_empty())
+    }
+
+    /// Vertex of the mesh for each vertex of the joined surface, then for each one that is loose.
+    fn vertices(&self, surface: &Written, joined: &Joined) -> Vec<u32> {
+        let GridSurface { ordered, source, loose, .. } = self.on_grid;
+        let on_surface = joined.first.iter().map(|&v| {
+            let cut = surface.vertex_source[v as usize];
+            ordered.vertex_source[source[cut as usize] as usize]
+        });
+        on_surface.chain(loose.vertices.iter().copied()).collect()
+    }
+
+    /// The corner of the mesh that is the first of each triangle of the surface.
+    fn corners(&self, surface: &Written, joined: &Joined, vertices: &[u32]) -> Vec<u32> {
+        let triangles = surface.mesh.surface.triangles.iter();
+        let first_corner = |(t, &f): (&[u32; 3], &u32)| {
+            let corner = self.on_grid.ordered.corner_source[f as usize];
+            let first = vertices[joined.place[t[0] as usize] as usize];
+            turned_to(self.input.mesh.triangles()[(corner / 3) as usize], corner, first)
+        };
+        triangles.zip(surface.face_source).map(first_corner).collect()
     }
 
     /// What is loose, and the corner of the mesh that is the first of each loose face.
@@ -139,6 +135,27 @@ impl Original<'_> {
             Some(loose),
         ));
         padded(coder.finish(), counts[0] + counts[1], u64::from(MAX_VERTICES_PER_BYTE))
+    }
+
+    /// The exact values of all attributes, if there are any. `of_mesh`: vertices and corners of the mesh.
+    fn write_values(
+        &self,
+        surface: &Written,
+        extras: &Extras,
+        joined: &Joined,
+        of_mesh: attributes::Elements,
+    ) -> Option<Vec<u8>> {
+        let (list, triangles) = (&self.quantised.list, &surface.mesh.surface.triangles);
+        if list.is_empty() {
+            return None;
+        }
+        let domains = list.iter().map(|one| one.declaration.domain);
+        let elements =
+            domains.zip(&surface.rows).map(|(d, rows)| extras.elements(joined, triangles, rows, d));
+        let elements: Vec<Elements> = elements.collect();
+        let Input { attributes, options, .. } = self.input;
+        let values = ExactValues { attributes, quantised: self.quantised, is_lossless: options.lossless };
+        values.payload(&elements, of_mesh)
     }
 
     fn write_positions(&self, vertices: &[u32]) -> Vec<u8> {

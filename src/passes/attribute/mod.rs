@@ -3,6 +3,10 @@
 //!
 //! A [`Layer`] holds the rows of one attribute and which of them every vertex, corner or face of the present mesh
 //! has. The corners at a vertex that share a row are a *wedge*; where the row changes, a seam runs.
+//!
+//! [`layer`] goes from element to element. [`wedges`] finds what a star inherits ([`inheritance`]) and where seams run
+//! ([`seams`]), [`faces`] does so for faces. [`row_coder`] codes each row from the rows [`around`] it, a new one channel by
+//! channel ([`forecast`]).
 
 mod around;
 pub(crate) mod declaration;

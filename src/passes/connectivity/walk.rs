@@ -89,6 +89,7 @@ impl PausedWalk {
     }
 }
 
+/// A walk that goes on.
 struct Walk<'a> {
     regions: Regions<'a>,
     models: &'a mut ConnectivityModels,
@@ -168,6 +169,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
+    /// Checks that one more patch is expected.
     fn check_room(&self) -> Result<(), Malformed> {
         if self.regions.patches.len() == self.count {
             return Err(Malformed("a level has more vertices than announced"));
@@ -235,11 +237,11 @@ impl<'a> Walk<'a> {
     ) -> Result<(), Malformed> {
         if is_in_patch {
             self.check_room()?;
-            self.code_patch(coder, corner, is_seed, wanted)
+            self.code_patch(coder, corner, is_seed, wanted);
         } else {
             self.keep(corner, is_seed);
-            Ok(())
         }
+        Ok(())
     }
 
     /// Keeps the face of `corner`: the walk goes on over its other edges.
@@ -255,13 +257,7 @@ impl<'a> Walk<'a> {
 
     /// Codes a patch that begins with the face of `corner`.
     #[inline(always)]
-    fn code_patch<B: BitCoder>(
-        &mut self,
-        coder: &mut B,
-        corner: u32,
-        is_seed: bool,
-        wanted: u32,
-    ) -> Result<(), Malformed> {
+    fn code_patch<B: BitCoder>(&mut self, coder: &mut B, corner: u32, is_seed: bool, wanted: u32) {
         self.regions.take(corner / 3);
         self.patch.frontier.extend([prev(corner), next(corner)]);
         if is_seed {
@@ -280,7 +276,6 @@ impl<'a> Walk<'a> {
             }
         }
         self.finish_patch(coder, wanted);
-        Ok(())
     }
 
     /// Codes whether the patch goes on across the edge that `inside` faces.
