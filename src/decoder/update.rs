@@ -19,7 +19,7 @@ pub struct Update {
     pub rewritten_triangles: Vec<Range<u32>>,
 }
 
-/// What [`Decoder::step_within`] came to.
+/// What [`Decoder::step_within`](crate::Decoder::step_within) came to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
     /// A pass is finished: the mesh has changed.
