@@ -51,7 +51,7 @@ fn variants() -> Vec<(&'static str, EncodeOptions)> {
         ("fast", with(|options| options.profile = Some(Profile::Fast))),
         ("algorithm1", with(|options| options.partition = Partition::Algorithm1)),
         ("lossless, order", with(|options| (options.lossless, options.keep_order) = (true, true))),
-        ("4 bits", with(|options| options.quantization = 4)),
+        ("4 bits", with(|options| options.quantization_bits = 4)),
     ]
 }
 

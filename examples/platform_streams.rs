@@ -70,7 +70,7 @@ fn ways() -> Vec<Way> {
         way("lossless", |o| (o.lossless, o.keep_order) = (true, true)),
         way("everything", everything),
         way("shape-index", |o| o.descriptor = Descriptor::ShapeIndex),
-        way("steps-per-edge", |o| (o.steps_per_edge, o.quantization) = (Some(3.0), 16)),
+        way("steps-per-edge", |o| (o.steps_per_edge, o.quantization_bits) = (Some(3.0), 16)),
     ];
     [&profiles[..], &aims, &descriptors, &others].concat()
 }

@@ -6,7 +6,7 @@ mod common;
 
 use common::attributed::{all, atlas, colours, flat_normals, materials, positions};
 use common::{grid, sphere, torus};
-use lwc::mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Values};
+use lwc::mesh::{Attribute, Attributes, Domain, NO_ENTRY, Semantic, Values};
 use lwc::{Decoder, EncodeOptions, Encoded, Limits, Optimize, Partition, TriMesh, encode_with_attributes};
 use std::collections::HashMap;
 
@@ -17,7 +17,7 @@ fn encode(mesh: &TriMesh, attributes: &Attributes, options: &EncodeOptions) -> E
 /// Sixteen bits, so that no two vertices of the models here share a cell.
 fn options() -> EncodeOptions {
     let mut options = EncodeOptions::default();
-    options.quantization = 16;
+    options.quantization_bits = 16;
     options
 }
 
@@ -31,7 +31,7 @@ fn decode(bytes: &[u8]) -> Decoder {
 /// The vertex of `mesh` that each vertex of the decoded mesh is.
 fn sources(mesh: &TriMesh, decoder: &Decoder) -> Vec<u32> {
     let info = decoder.info().unwrap();
-    let steps = f64::from((1_u32 << info.precision()) - 1);
+    let steps = f64::from((1_u32 << info.quantization_bits()) - 1);
     let cell = |p: &[f64; 3]| -> [i32; 3] {
         std::array::from_fn(|a| ((p[a] - info.origin()[a]) * steps / info.side() + 0.5).floor() as i32)
     };
@@ -67,10 +67,10 @@ fn pairs(
             let (t, turn) = triangles[k / 3];
             3 * t + (k % 3 + turn) % 3
         }
-        Domain::Face => triangles[k].0,
+        Domain::Triangle => triangles[k].0,
     };
     let count = attribute.domain.num_elements(mesh);
-    (0..count).map(|k| (attribute.row(element(k)), found.row(k))).collect()
+    (0..count).map(|k| (attribute.entry(element(k)), found.entry(k))).collect()
 }
 
 /// The largest difference of a number, exact for names and for what has no value.
@@ -78,7 +78,7 @@ fn deviation(mesh: &TriMesh, decoder: &Decoder, attribute: &Attribute, found: &A
     let decoded = decoder.mesh().unwrap().to_tri_mesh();
     assert_eq!(found.validate(&decoded), Ok(()));
     let kind = |a: &Attribute| {
-        (a.name.clone(), a.semantic, a.domain, a.num_components, a.is_normalized, a.values.scalar_type())
+        (a.name.clone(), a.semantic, a.domain, a.num_components, a.is_normalized, a.values.component_type())
     };
     assert_eq!(kind(attribute), kind(found));
     let mut most = 0.0_f64;
@@ -140,8 +140,8 @@ fn every_domain_and_type_comes_back_to_its_step() {
         scalar(Values::F64(height().collect())),
         scalar(Values::I32((0..n as i32).map(|v| v * 1_000_000 - 400_000_000).collect())),
         scalar(Values::U16(height().map(|z| ((z + 2.0) * 900.0) as u16).collect())),
-        Attribute::new("part", Semantic::Generic, Domain::Face, 1, bytes),
-        Attribute::new("area", Semantic::Generic, Domain::Face, 1, areas),
+        Attribute::new("part", Semantic::Generic, Domain::Triangle, 1, bytes),
+        Attribute::new("area", Semantic::Generic, Domain::Triangle, 1, areas),
         Attribute {
             is_normalized: true,
             ..Attribute::new("w", Semantic::Generic, Domain::Vertex, 1, Values::U8(vec![200; n]))
@@ -164,26 +164,26 @@ fn every_domain_and_type_comes_back_to_its_step() {
 #[test]
 fn what_has_no_value_has_none_afterwards() {
     let (mesh, uv) = atlas(24, 16);
-    let mut corners = Attribute { indices: Some((0..uv.num_rows() as u32).collect()), ..uv };
+    let mut corners = Attribute { indices: Some((0..uv.num_entries() as u32).collect()), ..uv };
     let indices = corners.indices.as_mut().unwrap();
     for (t, triangle) in mesh.triangles().iter().enumerate() {
         if triangle.iter().any(|v| v % 16 < 4) {
-            indices[3 * t..3 * t + 3].fill(NO_ROW);
+            indices[3 * t..3 * t + 3].fill(NO_ENTRY);
         }
     }
     let mut quality: Vec<f32> = positions(&mesh).map(|p| p[0] as f32).collect();
     quality[7] = f32::NAN;
     let quality = Attribute::new("q", Semantic::Generic, Domain::Vertex, 1, Values::F32(quality));
     let nothing = Attribute {
-        indices: Some(vec![NO_ROW; mesh.num_triangles()]),
-        ..Attribute::new("g", Semantic::Group, Domain::Face, 1, Values::Names(vec![]))
+        indices: Some(vec![NO_ENTRY; mesh.num_triangles()]),
+        ..Attribute::new("g", Semantic::Group, Domain::Triangle, 1, Values::Names(vec![]))
     };
     let encoded = encode(&mesh, &all(vec![corners.clone(), quality.clone(), nothing.clone()]), &options());
     assert_eq!(encoded.values_dropped, 1);
     let decoder = decode(&encoded.bytes);
     let found = decoder.attributes();
     assert!(deviation(&mesh, &decoder, &corners, &found.list[0]) < 0.0006);
-    assert_eq!(found.list[1].indices.iter().flatten().filter(|&&row| row == NO_ROW).count(), 1);
+    assert_eq!(found.list[1].indices.iter().flatten().filter(|&&row| row == NO_ENTRY).count(), 1);
     assert_eq!(deviation(&mesh, &decoder, &nothing, &found.list[2]), 0.0);
 }
 
@@ -219,7 +219,7 @@ fn charts_do_not_bleed_on_coarse_levels() {
             continue;
         }
         for t in 0..mesh.num_triangles() {
-            let corners = [0, 1, 2].map(|c| found.list[0].row_at_corner(&mesh, t, c).unwrap());
+            let corners = [0, 1, 2].map(|c| found.list[0].entry_at_corner(&mesh, t, c).unwrap());
             for k in 0..2 {
                 let [a, b, c] = corners.map(|row| found.list[0].number(row, k).unwrap());
                 let span = a.max(b).max(c) - a.min(b).min(c);
@@ -247,7 +247,7 @@ fn every_cut_has_attributes_for_its_mesh() {
         attributes.list.iter().for_each(|a| assert_eq!(a.validate(&level), Ok(()), "{cut} bytes"));
         let (preview, attributes) = decoder.preview_with_attributes().unwrap();
         attributes.list.iter().for_each(|a| assert_eq!(a.validate(&preview), Ok(()), "{cut} bytes"));
-        assert!(attributes.list.iter().all(|a| a.indices.iter().flatten().all(|&row| row != NO_ROW)));
+        assert!(attributes.list.iter().all(|a| a.indices.iter().flatten().all(|&row| row != NO_ENTRY)));
     }
 }
 
@@ -283,9 +283,9 @@ fn charts(mesh: &TriMesh, uv: &Attribute) -> Vec<usize> {
         }
         k
     }
-    let mut of: Vec<usize> = (0..uv.num_rows()).collect();
+    let mut of: Vec<usize> = (0..uv.num_entries()).collect();
     for t in 0..mesh.num_triangles() {
-        let rows = [0, 1, 2].map(|c| uv.row_at_corner(mesh, t, c).unwrap());
+        let rows = [0, 1, 2].map(|c| uv.entry_at_corner(mesh, t, c).unwrap());
         for other in [rows[1], rows[2]] {
             let (a, b) = (root(&mut of, rows[0]), root(&mut of, other));
             of[a] = b;
@@ -304,7 +304,7 @@ fn the_charts_of_spot_stay_apart() {
     let chart_of = charts(&file.mesh, uv);
     let mut fine = EncodeOptions::default();
     // So many bits that every row has a place of its own.
-    fine.uv_bits = 20;
+    fine.texcoord_bits = 20;
     let encoded = encode(&file.mesh, &all(vec![uv.clone()]), &fine);
     let place = |u: f64, v: f64| [u, v].map(|x| (x * 16384.0).round() as i64);
     let mut at: HashMap<_, Vec<usize>> = HashMap::new();
@@ -324,7 +324,7 @@ fn the_charts_of_spot_stay_apart() {
         let found = &found.list[0];
         for t in 0..mesh.num_triangles() {
             let charts = [0, 1, 2].map(|c| {
-                let row = found.row_at_corner(&mesh, t, c).unwrap();
+                let row = found.entry_at_corner(&mesh, t, c).unwrap();
                 let [u, v] = [0, 1].map(|k| found.number(row, k).unwrap());
                 let [u, v] = place(u, v);
                 // A value half way between two places may have gone to either.

@@ -8,7 +8,7 @@ use common::corpus::corpus;
 use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, ReadError, WriteReport},
-    mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values},
+    mesh::{Attribute, Attributes, ComponentType, Domain, NO_ENTRY, Semantic, Values},
 };
 
 fn obj(text: &str) -> Result<MeshFile, ReadError> {
@@ -39,7 +39,7 @@ fn names(file: &MeshFile) -> Vec<&str> {
 fn at_corners(mesh: &TriMesh, attribute: &Attribute) -> Vec<f64> {
     let n = attribute.num_components;
     let corner = |k: usize| {
-        let row = attribute.row_at_corner(mesh, k / 3, k % 3);
+        let row = attribute.entry_at_corner(mesh, k / 3, k % 3);
         (0..n).map(move |c| row.and_then(|row| attribute.number(row, c)).unwrap_or(f64::NAN))
     };
     (0..3 * mesh.num_triangles()).flat_map(corner).collect()
@@ -76,21 +76,21 @@ const TYPED_BODY: &str = "0 0 0 0 0 1 255 0 7 0.1 0.2 -128 -32768 -2147483648 42
 fn ply_properties_keep_name_type_and_bits() {
     let file = ply(format!("ply\nformat ascii 1.0\n{TYPED}{TYPED_BODY}")).unwrap();
     let expected = [
-        ("nx ny nz", Semantic::Normal, Domain::Vertex, ScalarType::F32),
-        ("red green blue", Semantic::Color(0), Domain::Vertex, ScalarType::U8),
-        ("s t", Semantic::TexCoord(0), Domain::Vertex, ScalarType::F64),
-        ("depth", Semantic::Generic, Domain::Vertex, ScalarType::I8),
-        ("time", Semantic::Generic, Domain::Vertex, ScalarType::I16),
-        ("id", Semantic::Generic, Domain::Vertex, ScalarType::I32),
-        ("big", Semantic::Generic, Domain::Vertex, ScalarType::U32),
-        ("u", Semantic::Generic, Domain::Vertex, ScalarType::U16),
-        ("v", Semantic::Generic, Domain::Vertex, ScalarType::I16),
-        ("material_index", Semantic::Material, Domain::Face, ScalarType::I32),
-        ("quality", Semantic::Generic, Domain::Face, ScalarType::F32),
+        ("nx ny nz", Semantic::Normal, Domain::Vertex, ComponentType::F32),
+        ("red green blue", Semantic::Color(0), Domain::Vertex, ComponentType::U8),
+        ("s t", Semantic::TexCoord(0), Domain::Vertex, ComponentType::F64),
+        ("depth", Semantic::Generic, Domain::Vertex, ComponentType::I8),
+        ("time", Semantic::Generic, Domain::Vertex, ComponentType::I16),
+        ("id", Semantic::Generic, Domain::Vertex, ComponentType::I32),
+        ("big", Semantic::Generic, Domain::Vertex, ComponentType::U32),
+        ("u", Semantic::Generic, Domain::Vertex, ComponentType::U16),
+        ("v", Semantic::Generic, Domain::Vertex, ComponentType::I16),
+        ("material_index", Semantic::Material, Domain::Triangle, ComponentType::I32),
+        ("quality", Semantic::Generic, Domain::Triangle, ComponentType::F32),
     ];
     let found = file.attributes.list.iter();
     let found: Vec<_> =
-        found.map(|a| (a.name.as_str(), a.semantic, a.domain, a.values.scalar_type().unwrap())).collect();
+        found.map(|a| (a.name.as_str(), a.semantic, a.domain, a.values.component_type().unwrap())).collect();
     assert_eq!(found, expected);
     assert_eq!(named(&file, "s t").values, Values::F64(vec![0.1, 0.2, 1e-320, f64::INFINITY, -0.0, 1.0]));
     let normals = [0.0, 0.0, 1.0, 0.0, -0.0, 1.0, 1e-45, 0.1, 1.0];
@@ -160,8 +160,8 @@ fn ply_texture_coordinates_of_corners_are_kept() {
         8 0 0 1 0 1 1 0 1 4 0 1 2 3 9\n0 3 0 1 2 8\n2 5 5 2 0 1 7\n5 1 2 3 4 5 3 2 1 0 6\n";
     let file = ply(text).unwrap();
     let uv = named(&file, "texcoord");
-    assert_eq!((uv.semantic, uv.domain, uv.num_rows()), (Semantic::TexCoord(0), Domain::Corner, 4));
-    let none = NO_ROW;
+    assert_eq!((uv.semantic, uv.domain, uv.num_entries()), (Semantic::TexCoord(0), Domain::Corner, 4));
+    let none = NO_ENTRY;
     let expected = vec![0, 1, 2, 0, 2, 3, none, none, none, none, none, none];
     assert_eq!(uv.indices, Some(expected));
     assert_eq!(named(&file, "texnumber").indices, Some(vec![0, 0, 1, 2]), "the edge has no triangle");
@@ -221,7 +221,7 @@ fn obj_corners_groups_and_colours_are_kept() {
     assert_eq!(names(&file), ["v.rgb", "vt", "vn", "usemtl", "g", "o", "s"]);
     assert_eq!(file.report.ignored, [""; 0]);
     assert_eq!(file.attributes.material_libraries[..], ["a.mtl", "two words.mtl"]);
-    let none = NO_ROW;
+    let none = NO_ENTRY;
 
     let colour = named(&file, "v.rgb");
     assert_eq!((colour.semantic, colour.domain), (Semantic::Color(0), Domain::Vertex));
@@ -280,7 +280,7 @@ fn obj_names_that_would_end_a_statement_are_cleaned() {
     let written = |name: &str| {
         let values = Values::Names(vec![name.to_owned()]);
         let mut attributes = Attributes::default();
-        attributes.list = vec![Attribute::new("usemtl", Semantic::Material, Domain::Face, 1, values)];
+        attributes.list = vec![Attribute::new("usemtl", Semantic::Material, Domain::Triangle, 1, values)];
         let mut bytes = Vec::new();
         io::write_with_attributes_to(&mut bytes, &mesh, &attributes, Format::Obj).unwrap();
         let file = io::read_bytes(&bytes, Format::Obj).unwrap();
@@ -357,6 +357,6 @@ fn corpus_attributes_survive_their_format() {
         }
     }
     let uv = io::read(directory.join("spot.obj")).unwrap();
-    assert_eq!(named(&uv, "vt").num_rows(), 3225);
+    assert_eq!(named(&uv, "vt").num_entries(), 3225);
     assert!(named(&uv, "vt").without_seams(&uv.mesh).is_none());
 }

@@ -15,7 +15,7 @@ fn wavy_sphere() -> TriMesh {
 }
 
 fn at_level(stream: &[u8], level: u32, compensate: bool) -> TriMesh {
-    decode(stream, DecodeOptions::new().level(level).compensate(compensate)).unwrap()
+    decode(stream, DecodeOptions::new().level(level).shrinkage_compensation(compensate)).unwrap()
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn coarse_levels_come_closer_and_the_finest_is_exact() {
 fn what_an_update_names_is_all_that_moves() {
     let encoded = lwc::encode(&wavy_sphere(), &EncodeOptions::default()).unwrap();
     for compensate in [true, false] {
-        let mut decoder = Decoder::with_options(DecodeOptions::new().compensate(compensate));
+        let mut decoder = Decoder::with_options(DecodeOptions::new().shrinkage_compensation(compensate));
         decoder.feed(&encoded.bytes).unwrap();
         let mut before: Vec<[f64; 3]> = Vec::new();
         let mut num_whole = 0;

@@ -16,11 +16,11 @@ fn streams() -> Vec<(&'static str, Vec<u8>)> {
     let mut cases = Vec::new();
     let torus = noisy(torus(9, 5), 1, 0.02);
     for (name, mesh, partition, quantization, profile) in [
-        ("torus", torus.clone(), Partition::Balanced, 9, Profile::Small),
+        ("torus", torus.clone(), Partition::WeightedError, 9, Profile::Small),
         ("grid", noisy(grid(7, 6, |x, y| 0.2 * x * y), 2, 0.05), Partition::Algorithm1, 8, Profile::Small),
-        ("strip", noisy(strip(34), 3, 0.02), Partition::Balanced, 7, Profile::Small),
-        ("max torus", torus.clone(), Partition::Balanced, 9, Profile::Max),
-        ("fast torus", torus, Partition::Balanced, 9, Profile::Fast),
+        ("strip", noisy(strip(34), 3, 0.02), Partition::WeightedError, 7, Profile::Small),
+        ("max torus", torus.clone(), Partition::WeightedError, 9, Profile::Max),
+        ("fast torus", torus, Partition::WeightedError, 9, Profile::Fast),
         ("fast strip", noisy(strip(34), 3, 0.02), Partition::Algorithm1, 7, Profile::Fast),
     ] {
         if !profile.is_supported() {
@@ -29,7 +29,7 @@ fn streams() -> Vec<(&'static str, Vec<u8>)> {
         let mut options = EncodeOptions::default();
         options.partition = partition;
         options.profile = Some(profile);
-        options.quantization = quantization;
+        options.quantization_bits = quantization;
         options.steps_per_edge = Some(5.0);
         options.levels = Some(4);
         // Not the usual one, so that it is written.
@@ -256,8 +256,8 @@ fn the_leading_chunks_must_be_there_once_and_in_order() {
     let kinds: Vec<u8> = parts.iter().take_while(|c| !c.is_pass()).map(|c| c.kind).collect();
     assert_eq!(kinds, b"HpcL");
     // How coarse meshes are shown changes no cell.
-    let uncompensated = [&parts[..2], &parts[3..]].concat();
-    let (decoder, error) = decode_all(&chunks::join(&uncompensated), Limits::default(), name);
+    let no_shrinkage_compensation = [&parts[..2], &parts[3..]].concat();
+    let (decoder, error) = decode_all(&chunks::join(&no_shrinkage_compensation), Limits::default(), name);
     assert_eq!((error, decoder.is_complete()), (None, true));
     assert_eq!(decoder.mesh().unwrap().checksum(), *Clean::of(&stream).checksums.last().unwrap());
     // Provenance is for people only: it may be missing.
@@ -441,10 +441,10 @@ fn counts_that_differ_from_the_payload_are_refused() {
 }
 
 /// A stream of nothing but a header, a table and passes of zeros.
-fn claim(precision: u8, rows: &[(&[u32], u32)], sent: usize) -> Vec<u8> {
+fn claim(quantization_bits: u8, rows: &[(&[u32], u32)], sent: usize) -> Vec<u8> {
     let rows: Vec<Row> = rows.iter().map(|&(head, size)| Row { head: head.to_vec(), size }).collect();
     let mut chunks =
-        vec![chunks::header(precision), Chunk { kind: b'L', payload: chunks::write_table(&rows) }];
+        vec![chunks::header(quantization_bits), Chunk { kind: b'L', payload: chunks::write_table(&rows) }];
     for (pass, row) in rows.iter().enumerate() {
         let kind = match (pass, &row.head[..]) {
             (0, _) => b'B',

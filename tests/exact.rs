@@ -73,7 +73,7 @@ fn signature(mesh: &TriMesh, places: &[[u64; 3]]) -> (Vec<u64>, Vec<[u64; 3]>) {
 /// The cells of a mesh on the grid of a stream.
 fn cells(mesh: &TriMesh, stream: &[u8]) -> Vec<[u64; 3]> {
     let info = lwc::StreamInfo::read(stream).unwrap().unwrap();
-    let steps = 2f64.powi(info.precision() as i32) - 1.0;
+    let steps = 2f64.powi(info.quantization_bits() as i32) - 1.0;
     let (origin, side) = (info.origin(), info.side());
     let cell = |x: f64, axis: usize| {
         let scaled = ((x - origin[axis]) / side * steps + 0.5).floor();
@@ -192,7 +192,7 @@ fn encoding_again_or_in_another_order_gives_the_same_bytes() {
     for (name, mesh) in every_kind() {
         for bits in [1, 7, 12, 20] {
             let mut options = EncodeOptions::default();
-            options.quantization = bits;
+            options.quantization_bits = bits;
             let stream = encode(&mesh, &options).unwrap().bytes;
             for seed in 0..3 {
                 let again = encode(&shuffled(&mesh, seed), &options).unwrap().bytes;
@@ -210,12 +210,12 @@ fn everything_comes_back_as_it_was() {
     for (name, mesh) in every_kind() {
         for quantization in [1, 12, 24] {
             let mut options = everything();
-            options.quantization = quantization;
+            options.quantization_bits = quantization;
             let encoded = encode(&mesh, &options).unwrap();
             let decoded = decode(&encoded.bytes, DecodeOptions::new()).unwrap();
             assert!(bits(&decoded) == bits(&mesh), "{name}, {quantization} bits");
             let repair = encoded.repair;
-            assert_eq!((repair.isolated_vertices, repair.degenerate_faces), (0, 0), "{name}");
+            assert_eq!((repair.isolated_vertices, repair.degenerate_triangles), (0, 0), "{name}");
         }
     }
 }
@@ -252,15 +252,15 @@ fn each_option_alone_keeps_what_it_says() {
         (encoded, decoded)
     };
     let (plain, decoded) = with(|_| {});
-    assert_eq!((plain.repair.isolated_vertices, plain.repair.degenerate_faces), (2, 2));
+    assert_eq!((plain.repair.isolated_vertices, plain.repair.degenerate_triangles), (2, 2));
     let sizes = |mesh: &TriMesh| (mesh.num_vertices(), mesh.num_triangles());
     let (n, m) = sizes(&mesh);
     assert_eq!(sizes(&decoded), (n - 2, m - 2));
     let (kept, decoded) = with(|o| o.keep_isolated = true);
-    assert_eq!((kept.repair.isolated_vertices, kept.repair.degenerate_faces), (0, 2));
+    assert_eq!((kept.repair.isolated_vertices, kept.repair.degenerate_triangles), (0, 2));
     assert_eq!(sizes(&decoded), (n, m - 2));
     let (kept, decoded) = with(|o| o.keep_degenerate = true);
-    assert_eq!((kept.repair.isolated_vertices, kept.repair.degenerate_faces), (2, 0));
+    assert_eq!((kept.repair.isolated_vertices, kept.repair.degenerate_triangles), (2, 0));
     assert_eq!(sizes(&decoded), (n - 2, m));
     assert_eq!(decoded.triangles().iter().filter(|t| !is_usable(t)).count(), 2);
     let (_, decoded) = with(|o| o.lossless = true);

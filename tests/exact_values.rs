@@ -7,7 +7,7 @@ mod common;
 use common::attributed::{all, atlas, colours, flat_normals, materials, nasty, smooth_normals};
 use common::kinds::every_kind;
 use common::{build, sphere};
-use lwc::mesh::{Attribute, Attributes, Domain, ScalarType, Semantic, Values};
+use lwc::mesh::{Attribute, Attributes, ComponentType, Domain, Semantic, Values};
 use lwc::{Decoder, EncodeOptions, Limits, Profile, TriMesh, encode_with_attributes};
 
 fn everything() -> EncodeOptions {
@@ -43,7 +43,7 @@ fn bits(mesh: &TriMesh, attributes: &Attributes) -> Vec<Vec<Vec<u64>>> {
     let of_one = |a: &Attribute| {
         assert_eq!(a.validate(mesh), Ok(()), "{}", a.name);
         let count = a.domain.num_elements(mesh);
-        (0..count).map(|k| a.row(k).map(|row| of_row(a, row)).unwrap_or_default()).collect()
+        (0..count).map(|k| a.entry(k).map(|row| of_row(a, row)).unwrap_or_default()).collect()
     };
     attributes.list.iter().map(of_one).collect()
 }
@@ -79,7 +79,7 @@ fn every_type_on_every_domain_returns_bit_for_bit() {
             (1, [Semantic::Color(0), Semantic::Normal]),
             (3, [Semantic::Object, Semantic::Generic]),
         ] {
-            let list = ScalarType::ALL.iter().zip(0..).flat_map(|(&scalar, k)| {
+            let list = ComponentType::ALL.iter().zip(0..).flat_map(|(&scalar, k)| {
                 let make = move |mesh, semantic, s| nasty(mesh, domain, scalar, semantic, s);
                 let mesh = &mesh;
                 semantics.map(|semantic| make(mesh, semantic, 6 * (k + 20 * i as u64) + seed))
@@ -105,7 +105,7 @@ fn every_kind_of_mesh_returns_with_attributes() {
         let mesh = with_loose_things(mesh);
         let list = Domain::ALL.into_iter().zip(0..).flat_map(|(domain, i)| {
             let make = |scalar, seed| nasty(&mesh, domain, scalar, Semantic::Generic, seed);
-            [make(ScalarType::F32, 2 + i), make(ScalarType::U8, 9 + i), make(ScalarType::F64, 6 * i)]
+            [make(ComponentType::F32, 2 + i), make(ComponentType::U8, 9 + i), make(ComponentType::F64, 6 * i)]
         });
         assert_lossless(&mesh, &all(list.chain([materials(&mesh)]).collect()), name);
     }
@@ -134,7 +134,7 @@ fn loose_things_have_values_to_their_bits() {
     assert_eq!(found.list[0].validate(&decoded), Ok(()));
     let range = values.iter().fold(0.0, |m: f64, x| m.max(x.abs())) * 2.0;
     for (v, wanted) in values.iter().enumerate() {
-        let got = found.list[0].number(found.list[0].row(v).unwrap(), 0).unwrap();
+        let got = found.list[0].number(found.list[0].entry(v).unwrap(), 0).unwrap();
         assert!((got - wanted).abs() < range / 4095.0, "vertex {v}: {got} for {wanted}");
     }
     let (wanted, got) = (bits(&mesh, &attributes), bits(&decoded, &found));

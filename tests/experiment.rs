@@ -51,11 +51,11 @@ fn by_encoder(mesh: &TriMesh, descriptor: Descriptor, levels: u32) -> Vec<(usize
     options.descriptor = descriptor;
     options.partition = Partition::Algorithm1;
     options.levels = Some(levels);
-    options.quantization = 30;
+    options.quantization_bits = 30;
     let stream = lwc::encode(mesh, &options).unwrap();
     let fine = lwc::decode(&stream.bytes, DecodeOptions::new()).unwrap();
     // Updates name what is new, not what is shown elsewhere.
-    let mut decoder = Decoder::with_options(DecodeOptions::new().compensate(false));
+    let mut decoder = Decoder::with_options(DecodeOptions::new().shrinkage_compensation(false));
     decoder.feed(&stream.bytes).unwrap();
     let mut steps = Vec::new();
     while let Some(update) = decoder.step().unwrap() {

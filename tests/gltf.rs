@@ -6,7 +6,7 @@ use base64::Engine;
 use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, ReadError},
-    mesh::{Attribute, Domain, NO_ROW, ScalarType, Semantic, Values},
+    mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values},
 };
 use serde_json::{Value, json};
 use std::fs;
@@ -95,7 +95,7 @@ fn corners(mesh: &TriMesh) -> Vec<[[f64; 3]; 3]> {
 /// The numbers at every corner.
 fn at_corners(file: &MeshFile, name: &str) -> Vec<Option<f64>> {
     let attribute = named(file, name);
-    let corner = |k: usize| attribute.row_at_corner(&file.mesh, k / 3, k % 3);
+    let corner = |k: usize| attribute.entry_at_corner(&file.mesh, k / 3, k % 3);
     let numbers = |k| (0..attribute.num_components).map(move |c| attribute.number(corner(k)?, c));
     (0..3 * file.mesh.num_triangles()).flat_map(numbers).collect()
 }
@@ -158,7 +158,7 @@ fn seams_are_joined_and_what_has_none_is_of_vertices() {
     assert_eq!(at_corners(&file, "TEXCOORD_0"), uv.map(|c| Some(f64::from(c))));
     let colour = named(&file, "COLOR_0");
     assert_eq!((colour.domain, colour.is_normalized), (Domain::Vertex, true));
-    assert_eq!(colour.values.scalar_type(), Some(ScalarType::U8));
+    assert_eq!(colour.values.component_type(), Some(ComponentType::U8));
     assert_eq!(
         (named(&file, "NORMAL").domain, named(&file, "NORMAL").indices.as_ref()),
         (Domain::Vertex, None)
@@ -172,7 +172,10 @@ fn seams_are_joined_and_what_has_none_is_of_vertices() {
         assert_eq!(corners(&again.mesh), corners(&file.mesh));
         for name in ["NORMAL", "TEXCOORD_0", "COLOR_0"] {
             assert_eq!(at_corners(&again, name), at_corners(&file, name), "{name}");
-            assert_eq!(named(&again, name).values.scalar_type(), named(&file, name).values.scalar_type());
+            assert_eq!(
+                named(&again, name).values.component_type(),
+                named(&file, name).values.component_type()
+            );
         }
     }
 }
@@ -193,7 +196,7 @@ fn primitives_share_vertices_and_have_materials() {
     assert_eq!(file.mesh.num_vertices(), 5);
     let material = named(&file, "material");
     assert_eq!(material.values.names().unwrap(), ["red", "blue"]);
-    assert_eq!(material.indices, Some(vec![0, 1, 0, NO_ROW]));
+    assert_eq!(material.indices, Some(vec![0, 1, 0, NO_ENTRY]));
     let id = named(&file, "_ID");
     assert_eq!((id.semantic, id.domain), (Semantic::Generic, Domain::Corner));
     assert_eq!(at_corners(&file, "_ID")[8..], [None, Some(1.0), Some(2.0), Some(3.0)]);
@@ -204,7 +207,7 @@ fn primitives_share_vertices_and_have_materials() {
     assert_eq!((report.ignored, report.zeroed), (vec![], vec!["_ID".to_owned()]));
     let again = io::read_bytes(&bytes, Format::Glb).unwrap();
     // One primitive for each material: the triangles without one come first.
-    assert_eq!(named(&again, "material").indices, Some(vec![NO_ROW, 0, 0, 1]));
+    assert_eq!(named(&again, "material").indices, Some(vec![NO_ENTRY, 0, 0, 1]));
     assert_eq!(named(&again, "material").values, material.values);
 }
 

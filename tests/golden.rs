@@ -12,7 +12,7 @@ mod common;
 
 use common::chunks;
 use common::valid::assert_valid;
-use lwc::mesh::ScalarType;
+use lwc::mesh::ComponentType;
 use lwc::{Decoder, Limits, PassKind, StreamInfo};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -52,7 +52,7 @@ fn streams_in(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 const HEADING: &str =
-    "# file, pass, kind, level, precision, vertices, faces, checksum of the mesh after the pass\n";
+    "# file, pass, kind, level, quantization_bits, vertices, faces, checksum of the mesh after the pass\n";
 
 /// The lines of `checksums.txt` for one stream.
 fn lines_of(name: &str, stream: &[u8]) -> String {
@@ -63,25 +63,29 @@ fn lines_of(name: &str, stream: &[u8]) -> String {
         let mesh = decoder.mesh().unwrap();
         assert_valid(mesh, name);
         let kind = update.pass.kind.name();
-        let (level, precision) = (mesh.level(), mesh.precision());
+        let (level, quantization_bits) = (mesh.level(), mesh.quantization_bits());
         let (vertices, faces) = (mesh.num_vertices(), mesh.num_triangles());
         let checksum = mesh.checksum();
-        writeln!(lines, "{name} {pass} {kind} {level} {precision} {vertices} {faces} {checksum:08x}")
+        writeln!(lines, "{name} {pass} {kind} {level} {quantization_bits} {vertices} {faces} {checksum:08x}")
             .unwrap();
-        if mesh.is_compensated() {
-            let checksum = checksum_of_whole(&mesh.to_cut_mesh());
-            writeln!(lines, "{name} {pass} shown {level} {precision} {vertices} {faces} {checksum:08x}")
-                .unwrap();
+        if mesh.has_shrinkage_compensation() {
+            let checksum = checksum_of_whole(&mesh.to_manifold_mesh());
+            writeln!(
+                lines,
+                "{name} {pass} shown {level} {quantization_bits} {vertices} {faces} {checksum:08x}"
+            )
+            .unwrap();
         }
         pass += 1;
     }
     assert!(decoder.is_complete(), "{name} is not complete");
     if chunks::split(stream).iter().any(|chunk| chunk.kind == b't') {
         let mesh = decoder.mesh().unwrap();
-        let (level, precision, whole) = (mesh.level(), mesh.precision(), mesh.to_tri_mesh());
+        let (level, quantization_bits, whole) = (mesh.level(), mesh.quantization_bits(), mesh.to_tri_mesh());
         let (vertices, faces) = (whole.num_vertices(), whole.num_triangles());
         let checksum = checksum_of_whole(&whole);
-        writeln!(lines, "{name} {pass} whole {level} {precision} {vertices} {faces} {checksum:08x}").unwrap();
+        writeln!(lines, "{name} {pass} whole {level} {quantization_bits} {vertices} {faces} {checksum:08x}")
+            .unwrap();
     }
     lines
 }
@@ -149,7 +153,7 @@ fn checksum_of_values(decoder: &Decoder) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     for attribute in &attributes.list {
         for element in 0..attribute.domain.num_elements(&mesh) {
-            let Some(row) = attribute.row(element) else {
+            let Some(row) = attribute.entry(element) else {
                 hasher.update(&[0]);
                 continue;
             };
@@ -158,7 +162,7 @@ fn checksum_of_values(decoder: &Decoder) -> u32 {
                 hasher.update(&(names[row].len() as u32).to_le_bytes());
                 hasher.update(names[row].as_bytes());
             }
-            let size = attribute.values.scalar_type().map_or(0, ScalarType::num_bytes);
+            let size = attribute.values.component_type().map_or(0, ComponentType::num_bytes);
             let n = attribute.num_components;
             for bits in (row * n..(row + 1) * n).filter_map(|k| attribute.values.bits(k)) {
                 hasher.update(&bits.to_le_bytes()[..size]);
@@ -217,7 +221,7 @@ fn the_golden_streams_cover_the_syntax() {
         for (feature, is_there) in [
             ("narrow header", payload(b'H')[0] & 1 == 0),
             ("wide header", payload(b'H')[0] & 1 == 1),
-            ("30 bits", info.precision() == 30),
+            ("30 bits", info.quantization_bits() == 30),
             ("provenance in the header", payload(b'H')[0] & 2 == 2),
             ("provenance in a chunk", chunks.iter().any(|c| c.kind == b'p')),
             ("no provenance", info.descriptor_code().is_none()),
@@ -262,7 +266,7 @@ mod make {
     use super::common::*;
     use lwc::descriptors::Descriptor;
     use lwc::mesh::{
-        Attribute, Domain, GltfMaterials, IDENTITY, Instance, NO_ROW, ScalarType, SceneTable, Semantic,
+        Attribute, ComponentType, Domain, GltfMaterials, IDENTITY, Instance, NO_ENTRY, SceneTable, Semantic,
         Values,
     };
     use lwc::{EncodeOptions, Partition, Profile, TriMesh, encode, encode_with_attributes};
@@ -318,7 +322,7 @@ mod make {
     #[cfg(feature = "fast")]
     fn all_fast() -> Vec<(&'static str, Vec<u8>)> {
         let fast = |mesh: &TriMesh, bits| {
-            stream(mesh, |o| (o.profile, o.quantization) = (Some(Profile::Fast), bits))
+            stream(mesh, |o| (o.profile, o.quantization_bits) = (Some(Profile::Fast), bits))
         };
         vec![
             ("tetrahedron", fast(&tetrahedron(), 12)),
@@ -366,19 +370,19 @@ mod make {
                 stream(&noisy(strip(120), 3, 0.02), |o| o.partition = Partition::Algorithm1)
             }),
             ("non-manifold", stream(&noisy(non_manifold_fin(), 4, 0.02), default)),
-            ("soup", stream(&soup(30, 60, 5), |o| o.quantization = 9)),
+            ("soup", stream(&soup(30, 60, 5), |o| o.quantization_bits = 9)),
             (
                 "components",
                 stream(&beside(sphere(1), beside(grid(5, 5, bumpy), tetrahedron())), |o| {
                     o.levels = Some(3);
                 }),
             ),
-            ("genus-3", stream(&genus3(), |o| o.quantization = 8)),
+            ("genus-3", stream(&genus3(), |o| o.quantization_bits = 8)),
             ("utm-30-bits", {
                 let shift = |p: [f64; 3]| [431_234.567 + p[0], 5_512_345.678 + p[1], 812.001 + p[2]];
-                stream(&map_positions(noisy(grid(9, 8, bumpy), 6, 0.1), shift), |o| o.quantization = 30)
+                stream(&map_positions(noisy(grid(9, 8, bumpy), 6, 0.1), shift), |o| o.quantization_bits = 30)
             }),
-            ("one-bit", stream(&noisy(sphere(2), 7, 0.02), |o| o.quantization = 1)),
+            ("one-bit", stream(&noisy(sphere(2), 7, 0.02), |o| o.quantization_bits = 1)),
             ("late-precision", stream(&torus, |o| o.steps_per_edge = Some(3.0))),
             ("precision-at-once", stream(&torus, |o| o.steps_per_edge = Some(1e9))),
             ("algorithm1", {
@@ -392,7 +396,7 @@ mod make {
             (
                 "flat-grid",
                 stream(&flat_grid(), |o| {
-                    o.quantization = 10;
+                    o.quantization_bits = 10;
                     o.steps_per_edge = Some(1.0);
                 }),
             ),
@@ -428,7 +432,7 @@ mod make {
             ("turned-faces", {
                 let (positions, mut triangles) = noisy(grid(12, 12, bumpy), 6, 0.02).into_parts();
                 triangles.iter_mut().skip(60).step_by(2).for_each(|t| t.swap(0, 1));
-                stream(&build(positions, triangles), |o| o.quantization = 8)
+                stream(&build(positions, triangles), |o| o.quantization_bits = 8)
             }),
             ("colours", {
                 let mesh = noisy(sphere(2), 10, 0.02);
@@ -444,11 +448,12 @@ mod make {
             }),
             ("materials", {
                 let (mesh, mut uv) = attributed::atlas(12, 8);
-                let mut rows: Vec<u32> = (0..uv.num_rows() as u32).collect();
-                rows[30..90].fill(NO_ROW);
+                let mut rows: Vec<u32> = (0..uv.num_entries() as u32).collect();
+                rows[30..90].fill(NO_ENTRY);
                 uv.indices = Some(rows);
                 let areas = (0..mesh.num_triangles()).map(|t| (t as f64 * 0.1).sin()).collect();
-                let areas = Attribute::new("area", Semantic::Generic, Domain::Face, 1, Values::F64(areas));
+                let areas =
+                    Attribute::new("area", Semantic::Generic, Domain::Triangle, 1, Values::F64(areas));
                 attributed(&mesh, vec![attributed::materials(&mesh), areas, uv])
             }),
             ("vertex-normals", {
@@ -480,9 +485,9 @@ mod make {
                 let nasty =
                     |domain, scalar, semantic, seed| attributed::nasty(&mesh, domain, scalar, semantic, seed);
                 let mut list = attributed::smooth_normals(&mesh).to_vec();
-                list.push(nasty(Domain::Vertex, ScalarType::U32, Semantic::Generic, 4));
-                list.push(nasty(Domain::Corner, ScalarType::F32, Semantic::TexCoord(0), 6));
-                list.push(nasty(Domain::Face, ScalarType::F64, Semantic::Generic, 2));
+                list.push(nasty(Domain::Vertex, ComponentType::U32, Semantic::Generic, 4));
+                list.push(nasty(Domain::Corner, ComponentType::F32, Semantic::TexCoord(0), 6));
+                list.push(nasty(Domain::Triangle, ComponentType::F64, Semantic::Generic, 2));
                 list.push(attributed::materials(&mesh));
                 encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
             }),
@@ -506,7 +511,7 @@ mod make {
         let mesh = beside(tetrahedron(), sphere(0));
         let number = |t: usize| u32::from(t >= 4);
         let which = (0..mesh.num_triangles()).map(number).collect();
-        let which = Attribute::new("scene mesh", Semantic::Generic, Domain::Face, 1, Values::U32(which));
+        let which = Attribute::new("scene mesh", Semantic::Generic, Domain::Triangle, 1, Values::U32(which));
         let mut attributes = attributed::all(vec![which, attributed::materials(&mesh)]);
         let place = |mesh, name: &str, transform| Instance { mesh, name: name.into(), transform };
         let [x, y, z] = IDENTITY;

@@ -134,7 +134,7 @@ fn a_curved_prediction_misses_less_of_a_sphere() {
 fn a_rigid_motion_of_the_coarse_mesh_moves_the_fine_mesh_rigidly() {
     for mesh in [bumpy_sphere(), noisy(grid(20, 30, |x, y| (0.3 * x).sin() * (0.2 * y).cos()), 2, 0.1)] {
         let mut encode = EncodeOptions::default();
-        encode.quantization = 14;
+        encode.quantization_bits = 14;
         let stream = lwc::encode(&mesh, &encode).unwrap().bytes;
         let fine = lwc::decode(&stream, DecodeOptions::new()).unwrap();
         for level in [0, 2, 5] {

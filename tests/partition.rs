@@ -191,7 +191,7 @@ fn options(partition: Partition, descriptor: Descriptor, levels: u32) -> EncodeO
     options.partition = partition;
     options.descriptor = descriptor;
     options.levels = Some(levels);
-    options.quantization = PRECISION;
+    options.quantization_bits = PRECISION;
     // Every level at full precision, so that cells tell vertices apart.
     options.steps_per_edge = Some(1e9);
     options
@@ -208,7 +208,7 @@ fn levels(stream: &[u8]) -> Vec<Decoded> {
     while let Some(update) = decoder.step().unwrap() {
         assert_ne!(update.pass.kind, PassKind::Refine, "full precision from the start");
         let mesh = decoder.mesh().unwrap();
-        let cells = mesh.cells().iter().map(|c| c.map(i64::from)).collect();
+        let cells = mesh.quantized_positions().iter().map(|c| c.map(i64::from)).collect();
         levels.push((cells, mesh.triangles().to_vec()));
     }
     levels
@@ -216,15 +216,15 @@ fn levels(stream: &[u8]) -> Vec<Decoded> {
 
 /// The mesh on the grid, vertices by the Morton code of their cells, triangles from their smallest vertex on
 /// and ascending: what the encoder looks at. No two vertices may share a cell.
-fn in_order_of_encoder(mesh: &TriMesh, precision: u32) -> TriMesh {
+fn in_order_of_encoder(mesh: &TriMesh, quantization_bits: u32) -> TriMesh {
     let (low, high) = mesh.bounding_box().unwrap();
     let side = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-    let steps = 2f64.powi(precision as i32) - 1.0;
+    let steps = 2f64.powi(quantization_bits as i32) - 1.0;
     let cell = |p: &[f64; 3]| -> [u64; 3] {
         std::array::from_fn(|axis| ((p[axis] - low[axis]) * steps / side + 0.5).floor() as u64)
     };
     let code = |cell: [u64; 3]| {
-        (0..precision)
+        (0..quantization_bits)
             .rev()
             .flat_map(|bit| cell.map(|c| c >> bit & 1))
             .fold(0_u128, |code, b| code << 1 | u128::from(b))
@@ -241,7 +241,7 @@ fn in_order_of_encoder(mesh: &TriMesh, precision: u32) -> TriMesh {
     };
     let mut triangles: Vec<[u32; 3]> = mesh.triangles().iter().map(turned).collect();
     triangles.sort_unstable();
-    let scale = 2f64.powi(precision as i32);
+    let scale = 2f64.powi(quantization_bits as i32);
     build(order.iter().map(|&(_, cell, _)| cell.map(|c| c as f64 / scale)).collect(), triangles)
 }
 
@@ -251,7 +251,7 @@ fn assert_follows_the_letter(what: &str, mesh: &TriMesh, options: &EncodeOptions
     let stream = encode(mesh, options).unwrap().bytes;
     let levels = levels(&stream);
     assert!(levels.len() > 2, "{what}: only {} levels", levels.len());
-    let mesh = &in_order_of_encoder(mesh, options.quantization);
+    let mesh = &in_order_of_encoder(mesh, options.quantization_bits);
     let mut slow = literal(mesh);
     let vertex_at: BTreeMap<[i64; 3], u32> = slow.cells.iter().zip(0..).map(|(&c, v)| (c, v)).collect();
     let mut window = options.window;
@@ -386,7 +386,7 @@ fn a_quarter_is_odd() {
     let mesh = noisy(sphere(4), 1, 0.01);
     for descriptor in Descriptor::ALL {
         let mut options = options(Partition::Algorithm1, descriptor, 6);
-        options.quantization = 14;
+        options.quantization_bits = 14;
         let info = encode(&mesh, &options).unwrap().info;
         for pair in info.passes().windows(2).filter(|pair| pair[0].vertices > 300) {
             let share = f64::from(pair[1].vertices - pair[0].vertices) / f64::from(pair[1].vertices);

@@ -30,7 +30,7 @@ fn meshes(stream: &[u8], work: u32) -> Vec<(u32, u32, u32)> {
         match decoder.step_within(work).unwrap() {
             Step::Finished(update) => {
                 let mesh = decoder.mesh().unwrap();
-                meshes.push((update.pass.level, update.pass.precision, mesh.checksum()));
+                meshes.push((update.pass.level, update.pass.quantization_bits, mesh.checksum()));
             }
             Step::Unfinished => {}
             Step::Waiting => break,
@@ -60,7 +60,7 @@ fn fast_streams_return_at_every_precision() {
     for quantization in [1, 8, 16, 30] {
         for (name, mesh) in [("torus", noisy(torus(20, 9), 1, 0.02)), ("soup", soup(40, 90, 3))] {
             let mut options = EncodeOptions::default();
-            (options.profile, options.quantization) = (Some(Profile::Fast), quantization);
+            (options.profile, options.quantization_bits) = (Some(Profile::Fast), quantization);
             let encoded = assert_round_trip(&mesh, &options, name);
             assert_eq!(encoded.info.profile(), Profile::Fast);
         }
@@ -70,7 +70,7 @@ fn fast_streams_return_at_every_precision() {
 /// A stream that is cut gives the mesh of its last whole pass, and the bytes may come one by one.
 #[test]
 fn fast_streams_can_be_cut() {
-    let stream = stream(&noisy(torus(20, 9), 1, 0.02), Profile::Fast, Partition::Balanced);
+    let stream = stream(&noisy(torus(20, 9), 1, 0.02), Profile::Fast, Partition::WeightedError);
     let whole = meshes(&stream, u32::MAX);
     let mut decoder = Decoder::new(Limits::default());
     for byte in stream.chunks(1) {
@@ -91,8 +91,8 @@ fn max_is_smaller_than_small() {
     for (name, mesh) in
         [("torus", noisy(torus(70, 40), 1, 0.004)), ("grid", noisy(grid(60, 50, bumpy), 2, 0.05))]
     {
-        let [max, small] =
-            [Profile::Max, Profile::Small].map(|profile| stream(&mesh, profile, Partition::Balanced).len());
+        let [max, small] = [Profile::Max, Profile::Small]
+            .map(|profile| stream(&mesh, profile, Partition::WeightedError).len());
         assert!(max < small, "{name}: {max} and {small} bytes");
     }
 }
@@ -139,7 +139,7 @@ fn declarations_may_stand_before_the_header() {
 
 #[test]
 fn profiles_to_come_are_unsupported() {
-    let mut chunks = chunks::split(&stream(&torus(9, 5), Profile::Small, Partition::Balanced));
+    let mut chunks = chunks::split(&stream(&torus(9, 5), Profile::Small, Partition::WeightedError));
     chunks[0].payload[0] |= 3 << 2;
     let stream = chunks::join(&chunks);
     let error = Decoder::new(Limits::default()).push(&stream).unwrap_err();

@@ -13,7 +13,7 @@ use lwc::{EncodeError, EncodeOptions, Partition, TriMesh, encode};
 fn options(partition: Partition, quantization: u32, levels: Option<u32>) -> EncodeOptions {
     let mut options = EncodeOptions::default();
     options.partition = partition;
-    options.quantization = quantization;
+    options.quantization_bits = quantization;
     options.levels = levels;
     options
 }
@@ -68,7 +68,7 @@ fn every_window_and_schedule_returns() {
     for (rings, radius, growth, steps_per_edge) in
         [(1, 1.0, 1.0, 0.5), (8, 20.0, 16.0, 1.0), (2, 1e-3, 1.5, 100.0), (4, 3.0, 1.5, 1e9)]
     {
-        let mut options = options(Partition::Balanced, 14, None);
+        let mut options = options(Partition::WeightedError, 14, None);
         options.window.rings = rings;
         options.window.radius = radius;
         options.growth = growth;
@@ -81,7 +81,7 @@ fn every_window_and_schedule_returns() {
 fn a_coarse_grid_folds_everything_and_still_returns() {
     // One bit per axis: nearly all triangles lose their area, many coincide.
     for (name, mesh) in every_kind() {
-        assert_round_trip(&mesh, &options(Partition::Balanced, 1, None), name);
+        assert_round_trip(&mesh, &options(Partition::WeightedError, 1, None), name);
     }
 }
 
@@ -108,8 +108,8 @@ fn nothing_to_encode_is_an_error() {
 fn an_option_out_of_range_is_an_error() {
     type Change = fn(&mut EncodeOptions);
     let changes: [(&str, Change); 8] = [
-        ("quantization", |o| o.quantization = 0),
-        ("quantization", |o| o.quantization = 31),
+        ("quantization", |o| o.quantization_bits = 0),
+        ("quantization", |o| o.quantization_bits = 31),
         ("levels", |o| o.levels = Some(129)),
         ("rings", |o| o.window.rings = 0),
         ("radius", |o| o.window.radius = f64::NAN),
@@ -153,7 +153,7 @@ fn the_quantiser_of_these_tests_rounds_halves_up() {
     let mesh = build(positions, vec![[1, 2, 0], [1, 1, 0]]);
     let quantised = quantise(&mesh, 2);
     assert_eq!(quantised.triangles, [[[0, 0, 0], [3, 1, 0], [2, 0, 0]]]);
-    assert_eq!((quantised.used_vertices, quantised.degenerate_faces), (3, 1));
+    assert_eq!((quantised.used_vertices, quantised.degenerate_triangles), (3, 1));
 }
 
 #[cfg(feature = "io")]

@@ -18,16 +18,16 @@ fn streams() -> Vec<(&'static str, Vec<u8>)> {
     let bumpy = |x: f64, y: f64| 0.6 * (0.7 * x).sin() * (0.5 * y).cos();
     let mut cases = Vec::new();
     for (name, mesh, partition, quantization) in [
-        ("sphere", noisy(sphere(2), 1, 0.02), Partition::Balanced, 12),
+        ("sphere", noisy(sphere(2), 1, 0.02), Partition::WeightedError, 12),
         ("grid", noisy(grid(12, 11, bumpy), 2, 0.05), Partition::Algorithm1, 10),
-        ("strip", noisy(strip(60), 3, 0.02), Partition::Balanced, 9),
+        ("strip", noisy(strip(60), 3, 0.02), Partition::WeightedError, 9),
         ("torus", noisy(torus(9, 5), 4, 0.02), Partition::Algorithm1, 14),
-        ("components", beside(torus(8, 5), noisy(strip(30), 6, 0.1)), Partition::Balanced, 11),
-        ("soup", soup(25, 60, 5), Partition::Balanced, 8),
+        ("components", beside(torus(8, 5), noisy(strip(30), 6, 0.1)), Partition::WeightedError, 11),
+        ("soup", soup(25, 60, 5), Partition::WeightedError, 8),
     ] {
         let mut options = EncodeOptions::default();
         options.partition = partition;
-        options.quantization = quantization;
+        options.quantization_bits = quantization;
         options.steps_per_edge = Some(6.0);
         cases.push((name, encode(&mesh, &options).unwrap().bytes));
     }
@@ -42,7 +42,7 @@ fn info_of(stream: &[u8]) -> StreamInfo {
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Copied {
     level: u32,
-    precision: u32,
+    quantization_bits: u32,
     cells: Vec<[i32; 3]>,
     triangles: Vec<[u32; 3]>,
 }
@@ -51,8 +51,8 @@ impl From<LevelMesh<'_>> for Copied {
     fn from(mesh: LevelMesh) -> Self {
         Self {
             level: mesh.level(),
-            precision: mesh.precision(),
-            cells: mesh.cells().to_vec(),
+            quantization_bits: mesh.quantization_bits(),
+            cells: mesh.quantized_positions().to_vec(),
             triangles: mesh.triangles().to_vec(),
         }
     }
@@ -149,8 +149,9 @@ fn every_pass_leaves_a_valid_mesh_that_is_as_announced() {
             assert_eq!(update.pass, *pass);
             let mesh = decoder.mesh().unwrap();
             assert_valid(mesh, &format!("{name}, pass {i}"));
-            let found = (mesh.level(), mesh.precision(), mesh.num_vertices(), mesh.num_triangles());
-            let announced = (pass.level, pass.precision, pass.vertices as usize, pass.faces as usize);
+            let found = (mesh.level(), mesh.quantization_bits(), mesh.num_vertices(), mesh.num_triangles());
+            let announced =
+                (pass.level, pass.quantization_bits, pass.vertices as usize, pass.triangles as usize);
             assert_eq!(found, announced, "{name}, pass {i}");
             let start = end.replace(pass.end).unwrap_or(end_of_pass(pass) - pass.bytes);
             assert_eq!(start + pass.bytes, end_of_pass(pass), "{name}, pass {i}: passes follow each other");
@@ -296,7 +297,7 @@ fn updates_name_all_that_changed() {
             let what = format!("{name}, {:?}", update.pass);
             // A viewer's copy: only what the update names is taken from the new mesh.
             copy.cells.resize(update.pass.vertices as usize, [-1; 3]);
-            copy.triangles.resize(update.pass.faces as usize, [u32::MAX; 3]);
+            copy.triangles.resize(update.pass.triangles as usize, [u32::MAX; 3]);
             if update.pass.kind == PassKind::Refine {
                 assert_eq!(update.vertices, 0..update.pass.vertices, "{what}");
                 assert!(update.new_triangles.is_empty() && update.rewritten_triangles.is_empty(), "{what}");
@@ -310,7 +311,7 @@ fn updates_name_all_that_changed() {
             for r in &triangles {
                 copy.triangles[range(r)].copy_from_slice(&mesh.triangles[range(r)]);
             }
-            (copy.level, copy.precision) = (update.pass.level, update.pass.precision);
+            (copy.level, copy.quantization_bits) = (update.pass.level, update.pass.quantization_bits);
             assert_eq!(copy, mesh, "{what}");
         }
     }
@@ -372,7 +373,7 @@ fn info_needs_the_table_and_nothing_more() {
 #[test]
 fn info_tells_the_options() {
     let mut options = EncodeOptions::default();
-    options.quantization = 13;
+    options.quantization_bits = 13;
     options.window.rings = 3;
     options.window.radius = 2.5;
     options.growth = 1.25;
@@ -381,11 +382,11 @@ fn info_tells_the_options() {
     let encoded = encode(&mesh, &options).unwrap();
     let info = info_of(&encoded.bytes);
     assert_eq!(format!("{info:?}"), format!("{:?}", encoded.info));
-    assert_eq!((info.precision(), info.window()), (13, Some((3, 2.5, 1.25))));
+    assert_eq!((info.quantization_bits(), info.window()), (13, Some((3, 2.5, 1.25))));
     assert_eq!(info.descriptor_code(), Some(options.descriptor as u8));
     assert_eq!(info.partition_code(), Some(Partition::Algorithm1 as u8));
     let (low, high) = mesh.bounding_box().unwrap();
     assert_eq!((info.origin(), info.side()), (low, high[0] - low[0]));
     let last = info.passes().last().unwrap();
-    assert_eq!((last.vertices, last.faces, last.precision), (162, 320, 13));
+    assert_eq!((last.vertices, last.triangles, last.quantization_bits), (162, 320, 13));
 }

@@ -37,7 +37,7 @@ fn attributes(mesh: &TriMesh) -> Attributes {
         n.iter_mut().for_each(|x| *x /= length);
     }
     let mut attributes = Attributes::default();
-    attributes.list = vec![of(Domain::Corner, 2), of(Domain::Face, 1), normals];
+    attributes.list = vec![of(Domain::Corner, 2), of(Domain::Triangle, 1), normals];
     attributes
 }
 
@@ -88,7 +88,7 @@ fn check(stream: &[u8], what: &str) -> Result<bool, DecodeError> {
     if let Some(mesh) = decoder.mesh() {
         let (positions, triangles) = mesh.to_tri_mesh().into_parts();
         assert!(TriMesh::new(positions, triangles).is_ok(), "{what}");
-        let (place, count) = mesh.joined_vertices();
+        let (place, count) = mesh.stitched_vertices();
         assert!(place.len() == mesh.num_vertices() && place.iter().all(|&v| (v as usize) < count), "{what}");
     }
     if let Some((mesh, attributes)) = decoder.to_tri_mesh_with_attributes() {

@@ -41,7 +41,7 @@ pub const ALL: [(&str, Generator); 29] = [
     ("turned sphere", turned_sphere),
     ("Moebius strip", moebius_strip),
     ("stacked grids", stacked_grids),
-    ("degenerate faces", degenerate_faces),
+    ("degenerate faces", degenerate_triangles),
     ("loose vertices", loose_vertices),
 ];
 
@@ -321,7 +321,7 @@ fn stacked_grids(faces: usize) -> TriMesh {
 }
 
 /// Faces that name a vertex twice, and one that does not.
-fn degenerate_faces(faces: usize) -> TriMesh {
+fn degenerate_triangles(faces: usize) -> TriMesh {
     let (n, mut random) = (faces as u32 - 1, Random(8));
     let positions = (0..n).map(|_| random.point()).collect();
     mesh(positions, (0..n).map(|i| [i, i, (i + 1) % n]).chain([[0, 1, 2]]).collect())

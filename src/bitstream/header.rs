@@ -6,7 +6,7 @@ use crate::util::bytes::Reader;
 use crate::util::bytes::write_varint;
 
 /// Largest number of bits per coordinate.
-pub(crate) const MAX_PRECISION: u32 = 30;
+pub(crate) const MAX_QUANTIZATION_BITS: u32 = 30;
 /// Largest number of passes after the base mesh, and so of levels.
 pub(crate) const MAX_PASSES: u32 = 4096;
 /// Vertices that one byte of payload may bring or refine: encoders pad, so that a small stream
@@ -16,17 +16,17 @@ pub(crate) const MAX_VERTICES_PER_BYTE: u32 = 64;
 /// The grid: cell `c` of the finest precision stands for `origin + c · side / (2^precision − 1)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Grid {
-    pub(crate) precision: u32,
+    pub(crate) quantization_bits: u32,
     pub(crate) origin: [f64; 3],
     pub(crate) side: f64,
 }
 
 impl Grid {
     /// Middle of the cells of the full grid that share the bits of `cell`, of which there are `precision`.
-    pub(crate) fn position(&self, cell: [i32; 3], precision: u32) -> [f64; 3] {
-        let hidden = self.precision - precision;
+    pub(crate) fn position(&self, cell: [i32; 3], quantization_bits: u32) -> [f64; 3] {
+        let hidden = self.quantization_bits - quantization_bits;
         let half = (f64::from(1_u32 << hidden) - 1.0) * 0.5;
-        let steps = f64::from((1_u32 << self.precision) - 1);
+        let steps = f64::from((1_u32 << self.quantization_bits) - 1);
         std::array::from_fn(|axis| {
             let fine = f64::from(cell[axis] << hidden) + half;
             self.origin[axis] + fine / steps * self.side
@@ -34,20 +34,20 @@ impl Grid {
     }
 
     /// Side of the cells of `precision` bits.
-    pub(crate) fn step(&self, precision: u32) -> f64 {
-        self.side / f64::from((1_u32 << self.precision) - 1)
-            * f64::from(1_u32 << (self.precision - precision))
+    pub(crate) fn step(&self, quantization_bits: u32) -> f64 {
+        self.side / f64::from((1_u32 << self.quantization_bits) - 1)
+            * f64::from(1_u32 << (self.quantization_bits - quantization_bits))
     }
 
     /// Half the side of a cell of the full grid.
     pub(crate) fn half_step(&self) -> f64 {
-        self.step(self.precision) * 0.5
+        self.step(self.quantization_bits) * 0.5
     }
 
     /// The cell of the full grid that is closest, halves rounded up.
     #[cfg(feature = "encoder")]
     pub(crate) fn cell(&self, position: [f64; 3]) -> [i32; 3] {
-        let steps = f64::from((1_u32 << self.precision) - 1);
+        let steps = f64::from((1_u32 << self.quantization_bits) - 1);
         std::array::from_fn(|axis| {
             let offset = position[axis] - self.origin[axis];
             let scaled = offset * steps / self.side;
@@ -80,28 +80,28 @@ impl Header {
         if flags >> PROFILE_SHIFT > MAX_PROFILE {
             return None;
         }
-        let precision = u32::from(reader.u8()?);
+        let quantization_bits = u32::from(reader.u8()?);
         let mut number = || if flags & WIDE_FLOATS != 0 { reader.f64() } else { reader.f32().map(f64::from) };
         let origin = [number()?, number()?, number()?];
         let side = number()?;
-        let sound = (1..=MAX_PRECISION).contains(&precision)
+        let sound = (1..=MAX_QUANTIZATION_BITS).contains(&quantization_bits)
             && side.is_finite()
             && side >= 0.0
             && origin.iter().all(|o| o.is_finite() && (o + side).is_finite());
-        let grid = Grid { precision, origin, side };
+        let grid = Grid { quantization_bits, origin, side };
         let (is_usual, profile) = (flags & USUAL_PROVENANCE != 0, flags >> PROFILE_SHIFT);
         (sound && reader.is_empty()).then_some(Self { grid, is_usual, profile })
     }
 
     #[cfg(any(feature = "encoder", test))]
     pub(crate) fn write(&self) -> Vec<u8> {
-        let Grid { precision, origin, side } = self.grid;
+        let Grid { quantization_bits, origin, side } = self.grid;
         let numbers = [origin[0], origin[1], origin[2], side];
         let is_narrow = numbers.iter().all(|&x| f64::from(x as f32).to_bits() == x.to_bits());
         let width = if is_narrow { 0 } else { WIDE_FLOATS };
         let usual = if self.is_usual { USUAL_PROVENANCE } else { 0 };
         let flags = width | usual | self.profile << PROFILE_SHIFT;
-        let mut payload = vec![flags, precision as u8];
+        let mut payload = vec![flags, quantization_bits as u8];
         for x in numbers {
             if is_narrow {
                 payload.extend_from_slice(&(x as f32).to_le_bytes());
@@ -153,7 +153,7 @@ impl Provenance {
 /// What one pass does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Action {
-    Base { precision: u32 },
+    Base { quantization_bits: u32 },
     Split,
     Refine,
 }
@@ -184,7 +184,7 @@ pub(crate) struct Pass {
 mod tests {
     use super::*;
 
-    const GRID: Grid = Grid { precision: 12, origin: [0.5, -1.0, 0.0], side: 3.0 };
+    const GRID: Grid = Grid { quantization_bits: 12, origin: [0.5, -1.0, 0.0], side: 3.0 };
 
     #[test]
     fn grids_return_in_the_shorter_form_that_is_exact() {
@@ -198,8 +198,8 @@ mod tests {
         assert_eq!(fine.write().len(), 34);
         assert_eq!(Header::read(&fine.write()), Some(fine));
         for bad in [
-            Grid { precision: 0, ..GRID },
-            Grid { precision: 31, ..GRID },
+            Grid { quantization_bits: 0, ..GRID },
+            Grid { quantization_bits: 31, ..GRID },
             Grid { side: -1.0, ..GRID },
             Grid { side: f64::INFINITY, ..GRID },
             Grid { origin: [f64::NAN; 3], ..GRID },

@@ -12,7 +12,7 @@ pub(crate) struct BadTable(pub(crate) &'static str);
 
 /// Bits of small numbers that are never larger by much.
 const COUNT_BITS: u32 = 4;
-const PRECISION_BITS: u32 = 2;
+const QUANTIZATION_FIELD_BITS: u32 = 2;
 /// Vertices of a usual base mesh.
 const USUAL_BASE: u32 = 36;
 
@@ -70,14 +70,14 @@ impl Outlook {
 
 /// Vertices of a split that lie on the boundary.
 fn on_boundary(row: &Pass) -> u32 {
-    2 * row.vertices - row.faces
+    2 * row.vertices - row.triangles
 }
 
-fn expected_faces(base_vertices: u32) -> u32 {
+fn expected_triangles(base_vertices: u32) -> u32 {
     base_vertices.saturating_mul(2).saturating_sub(4)
 }
 
-/// Reads the table of passes; the first is always the base mesh. The sums of vertices and of faces
+/// Reads the table of passes; the first is always the base mesh. The sums of vertices and of triangles
 /// stay below 2³⁰.
 pub(crate) fn read_passes(payload: &[u8], grid: &Grid) -> Result<Vec<Pass>, BadTable> {
     let mut reader = BitReader::new(payload);
@@ -86,29 +86,29 @@ pub(crate) fn read_passes(payload: &[u8], grid: &Grid) -> Result<Vec<Pass>, BadT
         return Err(BadTable("too many passes"));
     }
     let base = read_base(&mut reader).ok_or(SHORT)?;
-    let Action::Base { mut precision } = base.action else { return Err(SHORT) };
-    if !(1..=grid.precision).contains(&precision) {
+    let Action::Base { mut quantization_bits } = base.action else { return Err(SHORT) };
+    if !(1..=grid.quantization_bits).contains(&quantization_bits) {
         return Err(BadTable("the precision of the base mesh is not that of a grid"));
     }
-    if base.vertices < 3 || base.faces == 0 {
+    if base.vertices < 3 || base.triangles == 0 {
         return Err(BadTable("the base mesh is empty"));
     }
-    check_density(base.vertices.max(base.faces), base.bytes)?;
+    check_density(base.vertices.max(base.triangles), base.bytes)?;
     let mut outlook = Outlook::after_base(base.vertices);
-    let mut faces = base.faces;
+    let mut triangles = base.triangles;
     let mut passes = vec![base];
     for _ in 0..count {
         let pass = if reader.bit().ok_or(SHORT)? {
-            precision += 1;
+            quantization_bits += 1;
             read_refinement(&mut reader, &outlook).ok_or(SHORT)?
         } else {
             read_split(&mut reader, &outlook)?
         };
-        if precision > grid.precision {
+        if quantization_bits > grid.quantization_bits {
             return Err(BadTable("the passes refine beyond the grid"));
         }
         outlook.learn(&pass).ok_or(TOO_LARGE)?;
-        faces = faces.checked_add(pass.faces).ok_or(TOO_LARGE)?;
+        triangles = triangles.checked_add(pass.triangles).ok_or(TOO_LARGE)?;
         let touched = if pass.action == Action::Refine { outlook.vertices } else { pass.vertices };
         check_density(touched, pass.bytes)?;
         passes.push(pass);
@@ -116,7 +116,7 @@ pub(crate) fn read_passes(payload: &[u8], grid: &Grid) -> Result<Vec<Pass>, BadT
     if !reader.is_at_end() {
         return Err(BadTable("something follows the table of passes"));
     }
-    if outlook.vertices >= u32::MAX / 4 || faces >= u32::MAX / 4 {
+    if outlook.vertices >= u32::MAX / 4 || triangles >= u32::MAX / 4 {
         return Err(TOO_LARGE);
     }
     Ok(passes)
@@ -126,11 +126,11 @@ const SHORT: BadTable = BadTable("the table of passes is cut or has a bad number
 const TOO_LARGE: BadTable = BadTable("the mesh is too large");
 
 fn read_base(reader: &mut BitReader) -> Option<Pass> {
-    let precision = reader.number(PRECISION_BITS)?;
+    let quantization_bits = reader.number(QUANTIZATION_FIELD_BITS)?;
     let vertices = reader.near(USUAL_BASE)?;
-    let faces = reader.near(expected_faces(vertices))?;
+    let triangles = reader.near(expected_triangles(vertices))?;
     let bytes = reader.near(vertices.saturating_mul(2))?;
-    Some(Pass { action: Action::Base { precision }, vertices, faces, bytes })
+    Some(Pass { action: Action::Base { quantization_bits }, vertices, triangles, bytes })
 }
 
 fn read_split(reader: &mut BitReader, outlook: &Outlook) -> Result<Pass, BadTable> {
@@ -140,17 +140,17 @@ fn read_split(reader: &mut BitReader, outlook: &Outlook) -> Result<Pass, BadTabl
     }
     let on_boundary = reader.near(outlook.boundary.of(vertices)).ok_or(SHORT)?;
     let inside = vertices.checked_sub(on_boundary).ok_or(BadTable("more boundary vertices than vertices"))?;
-    let faces = vertices.checked_add(inside).ok_or(TOO_LARGE)?;
+    let triangles = vertices.checked_add(inside).ok_or(TOO_LARGE)?;
     let bytes = reader.near(outlook.split_bytes.of(vertices)).ok_or(SHORT)?;
-    Ok(Pass { action: Action::Split, vertices, faces, bytes })
+    Ok(Pass { action: Action::Split, vertices, triangles, bytes })
 }
 
 fn read_refinement(reader: &mut BitReader, outlook: &Outlook) -> Option<Pass> {
     let bytes = reader.near(outlook.refine_bytes.of(outlook.vertices))?;
-    Some(Pass { action: Action::Refine, vertices: 0, faces: 0, bytes })
+    Some(Pass { action: Action::Refine, vertices: 0, triangles: 0, bytes })
 }
 
-/// Vertices a payload of `bytes` may bring or refine.
+/// Vertices that a payload of `bytes` may add or refine.
 pub(crate) fn check_density(vertices: u32, bytes: u32) -> Result<(), BadTable> {
     if u64::from(vertices) > u64::from(MAX_VERTICES_PER_BYTE) * (u64::from(bytes) + 1) {
         return Err(BadTable("a pass has more vertices than its bytes could hold"));
@@ -166,10 +166,10 @@ pub(crate) fn write_passes(passes: &[Pass]) -> Vec<u8> {
     let mut outlook = Outlook::after_base(passes[0].vertices);
     for pass in passes {
         match pass.action {
-            Action::Base { precision } => {
-                writer.number(precision, PRECISION_BITS);
+            Action::Base { quantization_bits } => {
+                writer.number(quantization_bits, QUANTIZATION_FIELD_BITS);
                 writer.near(pass.vertices, USUAL_BASE);
-                writer.near(pass.faces, expected_faces(pass.vertices));
+                writer.near(pass.triangles, expected_triangles(pass.vertices));
                 writer.near(pass.bytes, pass.vertices.saturating_mul(2));
                 continue;
             }
@@ -196,15 +196,15 @@ pub(crate) fn write_passes(passes: &[Pass]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    const GRID: Grid = Grid { precision: 12, origin: [0.5, -1.0, 0.0], side: 3.0 };
+    const GRID: Grid = Grid { quantization_bits: 12, origin: [0.5, -1.0, 0.0], side: 3.0 };
 
     #[test]
     fn tables_return_and_lies_are_refused() {
         let passes = [
-            Pass { action: Action::Base { precision: 11 }, vertices: 4, faces: 4, bytes: 20 },
-            Pass { action: Action::Split, vertices: 3, faces: 5, bytes: 9 },
-            Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 1 },
-            Pass { action: Action::Split, vertices: 70, faces: 140, bytes: 300 },
+            Pass { action: Action::Base { quantization_bits: 11 }, vertices: 4, triangles: 4, bytes: 20 },
+            Pass { action: Action::Split, vertices: 3, triangles: 5, bytes: 9 },
+            Pass { action: Action::Refine, vertices: 0, triangles: 0, bytes: 1 },
+            Pass { action: Action::Split, vertices: 70, triangles: 140, bytes: 300 },
         ];
         let payload = write_passes(&passes);
         assert_eq!(read_passes(&payload, &GRID).as_deref(), Ok(&passes[..]));
@@ -213,15 +213,15 @@ mod tests {
         }
         let mut huge = passes;
         huge[3].vertices = 300 * 64 + 65;
-        huge[3].faces = 2 * huge[3].vertices;
+        huge[3].triangles = 2 * huge[3].vertices;
         assert!(read_passes(&write_passes(&huge), &GRID).is_err());
         let mut deep = passes.to_vec();
         deep.push(passes[2]);
         assert!(read_passes(&write_passes(&deep), &GRID).is_err(), "thirteen bits on a grid of twelve");
-        for precision in [0, 13, 32, u32::MAX - 1, u32::MAX] {
+        for quantization_bits in [0, 13, 32, u32::MAX - 1, u32::MAX] {
             let mut wide = passes;
-            wide[0].action = Action::Base { precision };
-            assert!(read_passes(&write_passes(&wide), &GRID).is_err(), "a base of {precision} bits");
+            wide[0].action = Action::Base { quantization_bits };
+            assert!(read_passes(&write_passes(&wide), &GRID).is_err(), "a base of {quantization_bits} bits");
         }
     }
 }

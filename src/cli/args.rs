@@ -71,9 +71,9 @@ pub struct Encode {
     ///
     /// With `--lossless` the default is 12, 15 or 18, whichever makes the smallest file; that takes three times
     /// as long.
-    #[arg(short, long, value_name = "BITS", allow_negative_numbers = true)]
+    #[arg(short = 'q', long, value_name = "BITS", allow_negative_numbers = true)]
     #[arg(value_parser = value_parser!(u32).range(1..=30))]
-    pub quantization: Option<u32>,
+    pub quantization_bits: Option<u32>,
     /// Levels above the base mesh, 0 to 128, or `auto`: as many as it takes to a small base mesh.
     #[arg(long, value_name = "N", default_value = "auto", allow_negative_numbers = true)]
     #[arg(value_parser = levels)]
@@ -84,12 +84,13 @@ pub struct Encode {
     pub growth: f64,
     /// How the vertices that a level removes are chosen.
     ///
-    /// - balanced: error and descriptor decide which vertices stay, the cost of coding which of the others go
+    /// - weighted-error: the error, weighted by the descriptor, decides which vertices stay, the cost of coding which of
+    ///   the others go
     /// - algorithm1: exactly the paper's Algorithm 1
     #[arg(long, value_name = "NAME", verbatim_doc_comment)]
     #[arg(default_value = EncodeOptions::default().partition.name(), value_parser = partition_parser())]
     pub partition: Partition,
-    /// What the balanced partition aims at.
+    /// What the partition by weighted error aims at.
     ///
     /// - size: the smallest file; no vertex is kept for its saliency, and --levels auto leaves out the levels where that is smaller
     /// - balanced: the beginning of a file shows nearly as good a mesh as with prefix, and the file is smaller
@@ -109,9 +110,9 @@ pub struct Encode {
     pub profile: Option<Profile>,
     /// Time to spend, 0 to 9.
     ///
-    /// - 0 to 2: the balanced partition does not use the descriptor, and --optimize size makes one try
+    /// - 0 to 2: the partition by weighted error leaves the descriptor out, and --optimize size makes one try
     /// - 3 to 6: the usual search
-    /// - 7, 8: --optimize size also tries other ways to spread the precision over the passes, and keeps the smallest file
+    /// - 7, 8: --optimize size also tries other ways to spread the bits over the passes, and keeps the smallest file
     /// - 9: --optimize size also tries other partitions, each in all these ways
     #[arg(long, value_name = "N", verbatim_doc_comment)]
     #[arg(default_value_t = EncodeOptions::default().effort, value_parser = clap::value_parser!(u32).range(0..=9))]
@@ -125,9 +126,9 @@ pub struct Encode {
     #[arg(value_parser = value_parser!(u32).range(2..=30), allow_negative_numbers = true)]
     pub normal_bits: u32,
     /// Bits of each texture coordinate, 1 to 30.
-    #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().uv_bits)]
+    #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().texcoord_bits)]
     #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
-    pub uv_bits: u32,
+    pub texcoord_bits: u32,
     /// Bits of each component of a colour, 1 to 30. Colours of 8 bits are kept exactly with 8.
     #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().color_bits)]
     #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
@@ -267,7 +268,7 @@ pub struct Decode {
     /// Leave the vertices of coarse levels where they are in the finest mesh. By default they are moved a little outwards,
     /// since coarse meshes shrink.
     #[arg(long)]
-    pub uncompensated: bool,
+    pub no_shrinkage_compensation: bool,
     /// Decode the first N bytes only, e.g. 5000 or 20K. Default: all.
     #[arg(short, long, value_name = "N", value_parser = quantity::bytes, allow_negative_numbers = true)]
     pub bytes: Option<u64>,

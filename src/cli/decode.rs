@@ -19,7 +19,9 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let (destination, format) = destination(args, source.path())?;
     destination.check(source.path(), format.is_text())?;
 
-    let mut options = DecodeOptions::new().limits(args.limits.limits()).compensate(!args.uncompensated);
+    let mut options = DecodeOptions::new()
+        .limits(args.limits.limits())
+        .shrinkage_compensation(!args.no_shrinkage_compensation);
     if let Some(level) = args.level {
         options = options.level(level);
     }
@@ -37,7 +39,7 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     if !ui.is_quiet() && destination != Destination::Stdout {
         let name = destination.name();
         let vertices = counted(mesh.num_vertices(), "vertex", "vertices");
-        let faces = counted(mesh.num_triangles(), "face", "faces");
+        let faces = counted(mesh.num_triangles(), "triangle", "triangles");
         let how_far = reached(&decoder).unwrap_or_default();
         writeln!(io::stdout(), "{name}: {vertices}, {faces}, {how_far}")?;
     }

@@ -22,7 +22,7 @@ impl Encode {
         options.window = self.scale.window.window();
         options.descriptor_attributes.clone_from(&self.scale.descriptor_attributes);
         options.growth = self.growth;
-        options.quantization = self.quantization.unwrap_or(options.quantization);
+        options.quantization_bits = self.quantization_bits.unwrap_or(options.quantization_bits);
         options.levels = self.levels.0;
         options.partition = self.partition;
         options.optimize = self.optimize;
@@ -30,7 +30,7 @@ impl Encode {
         options.effort = self.effort;
         options.steps_per_edge = self.steps_per_edge;
         options.normal_bits = self.normal_bits;
-        options.uv_bits = self.uv_bits;
+        options.texcoord_bits = self.texcoord_bits;
         options.color_bits = self.color_bits;
         options.generic_bits = self.generic_bits;
         options.lossless = self.lossless;
@@ -100,12 +100,12 @@ fn encode(file: &MeshFile, args: &Encode, ui: &Ui) -> Result<(Encoded, EncodeOpt
         Ok((encoded, options))
     };
     let options = args.options();
-    if !args.lossless || args.quantization.is_some() {
+    if !args.lossless || args.quantization_bits.is_some() {
         return encode(options);
     }
     let with = |bits: u32| {
         let mut options = options.clone();
-        options.quantization = bits;
+        options.quantization_bits = bits;
         encode(options)
     };
     let mut best = with(LOSSLESS_BITS[0])?;
@@ -138,18 +138,18 @@ fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
             "in one piece: nothing shows before the last byte has come; `--levels 99` keeps levels",
         );
     }
-    let RepairReport { degenerate_faces, isolated_vertices, repeated_vertices } = encoded.repair;
+    let RepairReport { degenerate_triangles, isolated_vertices, repeated_vertices } = encoded.repair;
     if encoded.values_dropped > 0 {
         let values = counted(encoded.values_dropped, "value", "values");
         ui.warn(name, &format!("{values} of attributes left out: not finite"));
     }
-    if degenerate_faces > 0 {
-        let faces = counted(degenerate_faces, "degenerate face", "degenerate faces");
+    if degenerate_triangles > 0 {
+        let faces = counted(degenerate_triangles, "degenerate triangle", "degenerate triangles");
         ui.warn(name, &format!("{faces} dropped"));
     }
     if isolated_vertices > 0 {
         let vertices = counted(isolated_vertices, "vertex", "vertices");
-        ui.warn(name, &format!("{vertices} without faces dropped"));
+        ui.warn(name, &format!("{vertices} without triangles dropped"));
     }
     if repeated_vertices > 0 {
         let vertices = counted(repeated_vertices, "vertex", "vertices");
@@ -212,9 +212,9 @@ impl Report<'_> {
                 "vertex",
                 "vertices"
             ),
-            counted(finest.map_or(0, |p| p.faces as usize), "face", "faces"),
+            counted(finest.map_or(0, |p| p.triangles as usize), "triangle", "triangles"),
             counted(info.finest_level() as usize, "level", "levels"),
-            info.precision(),
+            info.quantization_bits(),
         )?;
         let ratio = self.ratio().map_or(String::new(), |r| format!(", {:.1} % of {input}", 100.0 * r));
         let verified = if self.args.verify { ", verified" } else { "" };
@@ -238,15 +238,15 @@ impl Report<'_> {
             "input": args.input.display().to_string(),
             "input_bytes": self.input_bytes(),
             "input_vertices": mesh.num_vertices(),
-            "input_faces": mesh.num_triangles(),
+            "input_triangles": mesh.num_triangles(),
             "output": output,
             "bytes": self.num_bytes(),
             "bits_per_vertex": passes::bits_per_vertex(self.num_bytes(), info),
             "ratio": self.ratio(),
             "vertices": finest.map(|p| p.vertices),
-            "faces": finest.map(|p| p.faces),
+            "triangles": finest.map(|p| p.triangles),
             "levels": info.finest_level(),
-            "precision": info.precision(),
+            "quantization_bits": info.quantization_bits(),
             "descriptor": args.scale.descriptor.name(),
             "rings": args.scale.window.rings,
             "radius": args.scale.window.radius,
@@ -265,7 +265,7 @@ impl Report<'_> {
             "points_left_out": read.points_left_out,
             "ignored": self.file.report.ignored.iter().chain(&self.left_out).collect::<Vec<_>>(),
             "attributes": passes::attributes_to_json(info, &[]),
-            "degenerate_faces": repair.degenerate_faces,
+            "degenerate_triangles": repair.degenerate_triangles,
             "isolated_vertices": repair.isolated_vertices,
             "repeated_vertices": repair.repeated_vertices,
             "passes": passes::to_json(info, self.num_bytes()),

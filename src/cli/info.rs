@@ -77,7 +77,7 @@ fn partition(info: &StreamInfo) -> Option<&'static str> {
 
 /// Side of a cell of the finest grid, model units.
 fn step(info: &StreamInfo) -> f64 {
-    info.side() / ((1_u64 << info.precision()) - 1) as f64
+    info.side() / ((1_u64 << info.quantization_bits()) - 1) as f64
 }
 
 fn header_bytes(info: &StreamInfo) -> u64 {
@@ -107,11 +107,11 @@ fn print(
         )?;
     }
     if let Some(finest) = info.passes().last() {
-        let (level, vertices, faces) = (finest.level, finest.vertices, finest.faces);
-        writeln!(out, "finest      level {level}, {vertices} vertices, {faces} faces")?;
+        let (level, vertices, triangles) = (finest.level, finest.vertices, finest.triangles);
+        writeln!(out, "finest      level {level}, {vertices} vertices, {triangles} triangles")?;
     }
     let [x, y, z] = info.origin();
-    let (bits, side, step) = (info.precision(), info.side(), step(info));
+    let (bits, side, step) = (info.quantization_bits(), info.side(), step(info));
     writeln!(out, "grid        {bits} bits, origin ({x}, {y}, {z}), side {side}, step {step}")?;
     if let (Some(descriptor), Some((rings, radius, growth))) = (descriptor(info), info.window()) {
         writeln!(
@@ -141,8 +141,8 @@ fn to_json(info: &StreamInfo, attribute_bytes: &[u64], name: &str, present: u64)
         "bits_per_vertex": passes::bits_per_vertex(info.total_bytes(), info),
         "levels": info.finest_level(),
         "vertices": finest.map(|p| p.vertices),
-        "faces": finest.map(|p| p.faces),
-        "precision": info.precision(),
+        "triangles": finest.map(|p| p.triangles),
+        "quantization_bits": info.quantization_bits(),
         "origin": info.origin(),
         "side": info.side(),
         "step": step(info),

@@ -198,9 +198,10 @@ impl StreamSource {
             let total = decoder.info().map_or(0, lwc::StreamInfo::total_bytes);
             bar.set(pass.end as f64 / total.max(1) as f64);
             if ui.is_verbose() {
-                let (kind, level, bits) = (pass.kind.name(), pass.level, pass.precision);
-                let (vertices, faces) = (pass.vertices, pass.faces);
-                let what = format!("{kind}: level {level}, {bits} bits, {vertices} vertices, {faces} faces");
+                let (kind, level, bits) = (pass.kind.name(), pass.level, pass.quantization_bits);
+                let (vertices, triangles) = (pass.vertices, pass.triangles);
+                let what =
+                    format!("{kind}: level {level}, {bits} bits, {vertices} vertices, {triangles} triangles");
                 ui.detail(&self.name(), &what);
             }
         }
@@ -234,5 +235,9 @@ pub fn reached(decoder: &Decoder) -> Option<String> {
     let has_all_passes = decoder.passes_done() == info.passes().len();
     let missing =
         if has_all_passes && !decoder.is_complete() { ", before all that follows the passes" } else { "" };
-    Some(format!("level {level} of {finest} at {} of {} bits{missing}", mesh.precision(), info.precision()))
+    Some(format!(
+        "level {level} of {finest} at {} of {} bits{missing}",
+        mesh.quantization_bits(),
+        info.quantization_bits()
+    ))
 }

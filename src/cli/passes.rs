@@ -24,10 +24,10 @@ pub fn to_json(info: &StreamInfo, present: u64) -> Value {
         json!({
             "kind": pass.kind.name(),
             "level": pass.level,
-            "precision": pass.precision,
+            "quantization_bits": pass.quantization_bits,
             "compensation": pass.compensation(),
             "vertices": pass.vertices,
-            "faces": pass.faces,
+            "triangles": pass.triangles,
             "odd_share": odd_share(info, i),
             "bytes": pass.bytes,
             "attribute_bytes": pass.attribute_bytes,
@@ -79,7 +79,17 @@ pub fn print(mut out: impl Write, info: &StreamInfo, present: u64) -> io::Result
     writeln!(
         out,
         "{:>4}  {:<6} {:>5} {:>4} {:>10} {:>10} {:>6} {:>10} {:>8} {:>11} {:>7}",
-        "pass", "kind", "level", "bits", "vertices", "faces", "odd %", "bytes", "bits/v", "end", "end %"
+        "pass",
+        "kind",
+        "level",
+        "bits",
+        "vertices",
+        "triangles",
+        "removed %",
+        "bytes",
+        "bits/v",
+        "end",
+        "end %"
     )?;
     let total = info.total_bytes().max(1) as f64;
     for (i, pass) in info.passes().iter().enumerate() {
@@ -91,9 +101,9 @@ pub fn print(mut out: impl Write, info: &StreamInfo, present: u64) -> io::Result
             "{i:>4}  {:<6} {:>5} {:>4} {:>10} {:>10} {odd:>6} {:>10} {:>8.3} {end:>11} {share:>7.1}{missing}",
             pass.kind.name(),
             pass.level,
-            pass.precision,
+            pass.quantization_bits,
             pass.vertices,
-            pass.faces,
+            pass.triangles,
             pass.bytes,
             bits_per_vertex(pass.bytes, info),
         )?;

@@ -26,7 +26,7 @@ pub fn verify(
     let check = || {
         let decoder = decode(encoded)?;
         let expected = Quantised::new(mesh, options, encoded.info.side());
-        compare_surface(&expected, options.quantization, encoded, &decoder)?;
+        compare_surface(&expected, options.quantization_bits, encoded, &decoder)?;
         let (decoded, found) = decoder.to_tri_mesh_with_attributes().ok_or("there is no mesh")?;
         compare_whole(&kept(mesh, options), &decoded, &expected, options)?;
         let cells: Vec<Cell> = mesh.positions().iter().map(|&p| expected.cell(p)).collect();
@@ -53,8 +53,9 @@ fn decode(encoded: &Encoded) -> Result<Decoder, String> {
         while let Some(update) = decoder.step().map_err(|e| e.to_string())? {
             let pass = passes.next().ok_or("there are more passes than announced")?;
             let mesh = decoder.mesh().ok_or("there is no mesh after a pass")?;
-            let found = (mesh.num_vertices(), mesh.num_triangles(), mesh.level(), mesh.precision());
-            let expected = (pass.vertices as usize, pass.faces as usize, pass.level, pass.precision);
+            let found = (mesh.num_vertices(), mesh.num_triangles(), mesh.level(), mesh.quantization_bits());
+            let expected =
+                (pass.vertices as usize, pass.triangles as usize, pass.level, pass.quantization_bits);
             if update.pass != *pass || found != expected {
                 let kind = pass.kind.name();
                 return Err(format!("the {kind} pass that ends at byte {} gives another mesh", pass.end));
@@ -72,14 +73,17 @@ fn decode(encoded: &Encoded) -> Result<Decoder, String> {
 
 fn compare_surface(
     expected: &Quantised,
-    precision: u32,
+    quantization_bits: u32,
     encoded: &Encoded,
     decoder: &Decoder,
 ) -> Result<(), String> {
     let decoded = decoder.mesh().ok_or("there is no mesh")?;
     let info = &encoded.info;
     let same_grid = info.side() == expected.side && info.origin() == expected.origin;
-    if info.precision() != precision || decoded.precision() != precision || !same_grid {
+    if info.quantization_bits() != quantization_bits
+        || decoded.quantization_bits() != quantization_bits
+        || !same_grid
+    {
         return Err("the grid differs".into());
     }
     let num_vertices = expected.num_vertices + encoded.repair.repeated_vertices;
@@ -90,7 +94,7 @@ fn compare_surface(
         let (found, wanted) = (decoded.num_triangles(), expected.triangles.len());
         return Err(format!("{found} faces in place of {wanted}"));
     }
-    let cells = decoded.cells();
+    let cells = decoded.quantized_positions();
     let found = sorted(decoded.triangles().iter().map(|t| t.map(|v| cells[v as usize])));
     let differing = num_missing(&expected.triangles, &found);
     if differing > 0 {
@@ -205,7 +209,7 @@ impl Quantised {
         let mut quantised = Self {
             origin: low,
             side: if is_close { side } else { longest },
-            steps: ((1_u64 << options.quantization) - 1) as f64,
+            steps: ((1_u64 << options.quantization_bits) - 1) as f64,
             num_vertices: is_used.iter().filter(|&&used| used).count(),
             triangles: Vec::new(),
         };
@@ -266,9 +270,9 @@ mod tests {
         TriMesh::new(positions, triangles).unwrap()
     }
 
-    fn verify(mesh: &TriMesh, precision: u32, encoded: &Encoded) -> Result<(), Failure> {
+    fn verify(mesh: &TriMesh, quantization_bits: u32, encoded: &Encoded) -> Result<(), Failure> {
         let mut options = EncodeOptions::default();
-        options.quantization = precision;
+        options.quantization_bits = quantization_bits;
         super::verify(mesh, &Attributes::default(), &options, encoded)
     }
 
@@ -308,8 +312,9 @@ mod tests {
     fn a_stream_of_another_mesh_is_found_out() {
         let (positions, triangles) = bumpy_grid();
         let right = encoded(&mesh(positions.clone(), triangles.clone()));
-        let fails = |positions: Vec<_>, triangles: Vec<_>, precision, part: &str| {
-            let error = verify(&mesh(positions, triangles), precision, &right).unwrap_err().to_string();
+        let fails = |positions: Vec<_>, triangles: Vec<_>, quantization_bits, part: &str| {
+            let error =
+                verify(&mesh(positions, triangles), quantization_bits, &right).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
         };
         let mut moved = positions.clone();

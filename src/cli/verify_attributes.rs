@@ -23,7 +23,7 @@ pub fn compare(
         return Ok(());
     }
     let found = decoder.attributes();
-    let decoded = decoder.mesh().ok_or("there is no mesh")?.to_cut_mesh();
+    let decoded = decoder.mesh().ok_or("there is no mesh")?.to_manifold_mesh();
     if found.list.len() != attributes.list.len() || found.material_libraries != attributes.material_libraries
     {
         return Err("attributes are missing".into());
@@ -35,7 +35,7 @@ pub fn compare(
         .map(|(wanted, found)| Pair::new(mesh, wanted, &decoded, found, options))
         .collect::<Result<_, _>>()?;
     let usable = |t: &usize| is_usable(&mesh.triangles()[*t]);
-    let theirs = decoder.mesh().map(|m| m.cells().to_vec()).unwrap_or_default();
+    let theirs = decoder.mesh().map(|m| m.quantized_positions().to_vec()).unwrap_or_default();
     let wanted = places((0..mesh.num_triangles()).filter(usable), mesh.triangles(), cells);
     let got = places(0..decoded.num_triangles(), decoded.triangles(), &theirs);
     let mut rest = &got[..];
@@ -94,14 +94,21 @@ impl<'a> Pair<'a> {
     ) -> Result<Self, String> {
         found.validate(decoded).map_err(|e| format!("{}: {e}", wanted.name))?;
         let kind = |a: &Attribute| {
-            (a.name.clone(), a.semantic, a.domain, a.num_components, a.is_normalized, a.values.scalar_type())
+            (
+                a.name.clone(),
+                a.semantic,
+                a.domain,
+                a.num_components,
+                a.is_normalized,
+                a.values.component_type(),
+            )
         };
         if kind(wanted) != kind(found) {
             return Err(format!("attribute {} has changed", wanted.name));
         }
         let bits = match wanted.semantic {
             Semantic::Normal => options.normal_bits,
-            Semantic::TexCoord(_) => options.uv_bits,
+            Semantic::TexCoord(_) => options.texcoord_bits,
             Semantic::Color(_) => options.color_bits,
             _ => options.generic_bits,
         };
@@ -114,7 +121,7 @@ impl<'a> Pair<'a> {
         let widest = range.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
         let largest = range.iter().flatten().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
         let steps = f64::from((1_u32 << bits) - 1);
-        let is_integer = wanted.values.scalar_type().is_some_and(lwc::mesh::ScalarType::is_integer);
+        let is_integer = wanted.values.component_type().is_some_and(lwc::mesh::ComponentType::is_integer);
         let is_exact = is_integer && widest <= steps || wanted.values.names().is_some();
         let step = (widest / steps).max(if is_integer { 1.0 } else { 0.0 });
         let step = if matches!(wanted.semantic, Semantic::Color(_)) { step.max(1.0 / steps) } else { step };
@@ -125,17 +132,17 @@ impl<'a> Pair<'a> {
 
     fn agree(&self, &(_, t, turn): &Place, &(_, other, other_turn): &Place) -> bool {
         (0..3).all(|c| {
-            let row = self.wanted.row_at_corner(self.mesh, t, (turn + c) % 3);
-            let found = self.found.row_at_corner(self.decoded, other, (other_turn + c) % 3);
+            let row = self.wanted.entry_at_corner(self.mesh, t, (turn + c) % 3);
+            let found = self.found.entry_at_corner(self.decoded, other, (other_turn + c) % 3);
             match (row, found) {
                 (Some(row), Some(found)) => self.rows_agree(row, found),
                 // What is not finite has no value.
                 (Some(row), None) => !self.is_finite(row),
                 (None, found) => found.is_none(),
             }
-        }) || self.wanted.domain == Domain::Face
-            && self.wanted.row(t).is_none()
-            && self.found.row(other).is_none()
+        }) || self.wanted.domain == Domain::Triangle
+            && self.wanted.entry(t).is_none()
+            && self.found.entry(other).is_none()
     }
 
     fn is_finite(&self, row: usize) -> bool {

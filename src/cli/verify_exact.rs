@@ -16,7 +16,7 @@ pub fn compare(
     options: &EncodeOptions,
 ) -> Result<(), String> {
     let signature = |a: &Attribute| {
-        (a.name.clone(), a.semantic, a.domain, a.num_components, a.is_normalized, a.values.scalar_type())
+        (a.name.clone(), a.semantic, a.domain, a.num_components, a.is_normalized, a.values.component_type())
     };
     if !attributes.list.iter().map(signature).eq(found.list.iter().map(signature)) {
         return Err("other attributes".into());
@@ -71,7 +71,7 @@ impl Hashes {
         kept().flat_map(|(_, t)| t).for_each(|&v| is_named[v as usize] = true);
         let at_vertices: Vec<u64> = (0..mesh.num_vertices()).map(at_vertex).collect();
         let triangle = |(f, t): (usize, &[u32; 3])| {
-            let of_face = of(Domain::Face, f);
+            let of_face = of(Domain::Triangle, f);
             [0, 1, 2].map(|k| {
                 let mut hasher = DefaultHasher::new();
                 (at_vertices[t[k] as usize], of(Domain::Corner, 3 * f + k), of_face).hash(&mut hasher);
@@ -91,7 +91,7 @@ impl Hashes {
 }
 
 fn hash_row(attribute: &Attribute, element: usize, hasher: &mut DefaultHasher) {
-    let row = attribute.row(element);
+    let row = attribute.entry(element);
     row.is_some().hash(hasher);
     let Some(row) = row else { return };
     match attribute.values.names() {

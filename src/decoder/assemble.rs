@@ -11,7 +11,7 @@ use crate::entropy::range_coder::RangeDecoder;
 use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, TriMesh, has_three_vertices};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ENTRY, TriMesh, has_three_vertices};
 use crate::passes::attribute::{Declarations, Rows};
 use crate::passes::cost::{self, Counts};
 use crate::passes::isolated_and_degenerate::{self, Loose};
@@ -49,7 +49,7 @@ impl Extras {
     fn fit(&self, mesh: &GridMesh) -> bool {
         let joined = self.joined(mesh.positions.len());
         let num_vertices = joined.first.len() + self.num_loose(Domain::Vertex);
-        let num_faces = joined.faces(&mesh.surface.triangles).count() + self.num_loose(Domain::Face);
+        let num_faces = joined.faces(&mesh.surface.triangles).count() + self.num_loose(Domain::Triangle);
         let loose = self.loose.iter().flat_map(|loose| loose.faces.iter().flatten());
         loose.into_iter().all(|&v| (v as usize) < num_vertices)
             && self.positions.as_ref().is_none_or(|positions| positions.len() == num_vertices)
@@ -94,7 +94,7 @@ impl Joined {
         let faces = || self.faces(triangles);
         match domain {
             Domain::Vertex => self.first.iter().map(|&v| [v, 0]).collect(),
-            Domain::Face => faces().map(|(face, _)| [face, 0]).collect(),
+            Domain::Triangle => faces().map(|(face, _)| [face, 0]).collect(),
             Domain::Corner => {
                 faces().flat_map(|(face, t)| [0, 1, 2].map(|k| [3 * face + k, t[k as usize]])).collect()
             }
@@ -132,7 +132,9 @@ impl Extras {
         let faces = self.triangles(&joined, triangles);
         let positions = match &self.positions {
             Some(positions) => positions.clone(),
-            None => self.of_vertices(&joined, &positions(), |cell| grid.position(cell, grid.precision)),
+            None => {
+                self.of_vertices(&joined, &positions(), |cell| grid.position(cell, grid.quantization_bits))
+            }
         };
         match &self.order {
             Some(order) => order.apply(&positions, &faces),
@@ -148,7 +150,7 @@ impl Extras {
         match domain {
             Domain::Vertex => loose.cells.len(),
             Domain::Corner => 3 * loose.faces.len(),
-            Domain::Face => loose.faces.len(),
+            Domain::Triangle => loose.faces.len(),
         }
     }
 
@@ -196,18 +198,18 @@ impl Extras {
                 told.of.clone()
             }
             _ => {
-                let row = |[element, _]: [u32; 2]| attribute.row(element as usize);
+                let row = |[element, _]: [u32; 2]| attribute.entry(element as usize);
                 let elements = joined.elements(triangles, attribute.domain).into_iter();
-                elements.map(|element| row(element).map_or(NO_ROW, |row| row as u32)).collect()
+                elements.map(|element| row(element).map_or(NO_ENTRY, |row| row as u32)).collect()
             }
         };
         if let Some(told) = told.filter(|told| !told.is_exact) {
-            let first = attribute.num_rows() as u32;
+            let first = attribute.num_entries() as u32;
             attribute.values.append(told.values.clone());
-            rows.extend(told.of.iter().map(|&row| if row == NO_ROW { NO_ROW } else { first + row }));
+            rows.extend(told.of.iter().map(|&row| if row == NO_ENTRY { NO_ENTRY } else { first + row }));
         }
         if told.is_none() {
-            rows.extend(std::iter::repeat_n(NO_ROW, self.num_loose(attribute.domain)));
+            rows.extend(std::iter::repeat_n(NO_ENTRY, self.num_loose(attribute.domain)));
         }
         if let Some(order) = &self.order {
             rows = match attribute.domain {
@@ -215,7 +217,7 @@ impl Extras {
                 Domain::Corner => {
                     order.corners.iter().flat_map(|&c| turns(c).map(|c| rows[c as usize])).collect()
                 }
-                Domain::Face => order.corners.iter().map(|&c| rows[(c / 3) as usize]).collect(),
+                Domain::Triangle => order.corners.iter().map(|&c| rows[(c / 3) as usize]).collect(),
             };
         }
         attribute.indices = Some(rows);
@@ -254,7 +256,7 @@ impl NewChunk<'_> {
 /// Units of work of a chunk for the vertices and faces of the surface.
 fn units_on_surface(kind: u8, mesh: &GridMesh, declared: Option<&Declarations>) -> u64 {
     let (vertices, faces) = (mesh.positions.len() as u64, mesh.surface.triangles.len() as u64);
-    let surface = Counts { vertices, faces };
+    let surface = Counts { vertices, triangles: faces };
     let none = Declarations::default();
     match kind {
         kind::GLUE => cost::glue(surface),
@@ -313,8 +315,13 @@ impl Extras {
         let count = counts[0] + counts[1];
         chunk.check_memory(LOOSE_EACH * count)?;
         Limits::check("work", cost::loose(count), chunk.work)?;
-        self.loose =
-            Some(isolated_and_degenerate::code(&mut coder, grid.precision, num_joined, counts, None)?);
+        self.loose = Some(isolated_and_degenerate::code(
+            &mut coder,
+            grid.quantization_bits,
+            num_joined,
+            counts,
+            None,
+        )?);
         Ok(())
     }
 
@@ -342,7 +349,7 @@ impl Extras {
             let on_surface = match list[k].domain {
                 Domain::Vertex => mesh.positions.len(),
                 Domain::Corner => 3 * triangles.len(),
-                Domain::Face => triangles.len(),
+                Domain::Triangle => triangles.len(),
             };
             let count = self.num_loose(list[k].domain) + if ladders[k].is_some() { on_surface } else { 0 };
             (VALUE_EACH + VALUE_PER_COMPONENT * list[k].num_components as u64) * count as u64

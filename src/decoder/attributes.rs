@@ -4,7 +4,7 @@ use super::frame::PassInfo;
 use crate::bitstream::header::Action;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeState};
-use crate::mesh::{Attribute, Attributes, Domain, NO_ROW, Values};
+use crate::mesh::{Attribute, Attributes, Domain, NO_ENTRY, Values};
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
 use crate::passes::attribute::{Brought, Coding, Declaration, Declarations, Desk, Layer, Rows};
 use crate::passes::patch::Patches;
@@ -113,7 +113,7 @@ impl AttributeDecoder {
         let mut hash = crc32fast::Hasher::new();
         for layer in &self.state.layers {
             for &row in &layer.rows.of {
-                let channels = if row == NO_ROW { &[-1][..] } else { layer.rows.get(row) };
+                let channels = if row == NO_ENTRY { &[-1][..] } else { layer.rows.get(row) };
                 channels.iter().for_each(|c| hash.update(&c.to_le_bytes()));
             }
         }
@@ -168,16 +168,16 @@ fn collect(declaration: &Declaration, layer: &Layer) -> Attribute {
     let mut indices = Vec::with_capacity(rows.of.len());
     if let Coding::Table { rows: table } = &declaration.coding {
         values = table.clone();
-        let symbol = |&row: &u32| if row == NO_ROW { NO_ROW } else { rows.get(row)[0] as u32 };
+        let symbol = |&row: &u32| if row == NO_ENTRY { NO_ENTRY } else { rows.get(row)[0] as u32 };
         indices.extend(rows.of.iter().map(symbol));
     } else {
-        let mut place = vec![NO_ROW; if declaration.domain == Domain::Corner { rows.len() } else { 0 }];
+        let mut place = vec![NO_ENTRY; if declaration.domain == Domain::Corner { rows.len() } else { 0 }];
         let mut count = 0;
         for &row in &rows.of {
-            let known = place.get(row as usize).copied().unwrap_or(NO_ROW);
+            let known = place.get(row as usize).copied().unwrap_or(NO_ENTRY);
             let index = match (row, known) {
-                (NO_ROW, _) => NO_ROW,
-                (_, NO_ROW) => {
+                (NO_ENTRY, _) => NO_ENTRY,
+                (_, NO_ENTRY) => {
                     declaration.restore(rows.get(row), &mut values);
                     count += 1;
                     count - 1
@@ -233,14 +233,14 @@ pub(super) fn bytes_of_models(declarations: &Declarations, mixing: Mixing) -> u6
 
 /// Bytes of memory that attributes of a mesh may take.
 pub(super) fn memory_for(declarations: &Declarations, pass: &PassInfo, mixing: Mixing) -> u64 {
-    let (vertices, faces) = (u64::from(pass.vertices), u64::from(pass.faces));
+    let (vertices, faces) = (u64::from(pass.vertices), u64::from(pass.triangles));
     let of_one = |declaration: &Declaration| {
         let row = 4 * declaration.num_channels() as u64 + 1;
         match declaration.domain {
             Domain::Vertex => vertices * (row + 4),
             // A pass may replace as many rows as there are.
             Domain::Corner => faces * 3 * (2 * row + 4),
-            Domain::Face => faces * (2 * row + 4),
+            Domain::Triangle => faces * (2 * row + 4),
         }
     };
     bytes_of_models(declarations, mixing) + declarations.list.iter().map(of_one).sum::<u64>()

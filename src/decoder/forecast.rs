@@ -40,8 +40,8 @@ pub(crate) fn of_trailing(kind: TrailingKind, finest: Counts, declared: &Declara
         TrailingKind::Values => {
             let elements = |domain| match domain {
                 Domain::Vertex => finest.vertices,
-                Domain::Corner => 3 * finest.faces,
-                Domain::Face => finest.faces,
+                Domain::Corner => 3 * finest.triangles,
+                Domain::Triangle => finest.triangles,
             };
             declared
                 .list

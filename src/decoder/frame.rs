@@ -8,7 +8,7 @@ use crate::bitstream::pass_table::{self, BadTable};
 use crate::bitstream::profile::Profile;
 use crate::error::DecodeError;
 use crate::limits::Limits;
-use crate::mesh::{Domain, ScalarType, SceneTable, Semantic};
+use crate::mesh::{ComponentType, Domain, SceneTable, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
 
 /// What a stream says of itself before its first pass.
@@ -37,7 +37,7 @@ pub struct AttributeInfo {
     /// Values of a row.
     pub num_components: usize,
     /// Type of the values, `None` for names.
-    pub scalar: Option<ScalarType>,
+    pub scalar: Option<ComponentType>,
     /// Bits of each of the integers that are coded for a row.
     pub bits: u32,
 }
@@ -144,7 +144,7 @@ pub struct PassInfo {
     /// Level after the pass.
     pub level: u32,
     /// Bits per coordinate after the pass.
-    pub precision: u32,
+    pub quantization_bits: u32,
     /// Vertices after the pass.
     pub vertices: u32,
     /// Triangles after the pass.
@@ -177,8 +177,8 @@ impl PassInfo {
 
 impl StreamInfo {
     /// Bits per coordinate of the finest mesh.
-    pub fn precision(&self) -> u32 {
-        self.grid.precision
+    pub fn quantization_bits(&self) -> u32 {
+        self.grid.quantization_bits
     }
 
     /// Smallest corner of the grid, model units.
@@ -399,12 +399,12 @@ pub(super) fn list_passes(
         let attribute_bytes = attributes.get(i).filter(|&&b| b > 0).map_or(0, |&b| chunk::other_size(b));
         let with_companions = bytes + attribute_bytes;
         let next = match (row.action, passes.last()) {
-            (Action::Base { precision }, _) => PassInfo {
+            (Action::Base { quantization_bits }, _) => PassInfo {
                 kind: PassKind::Base,
                 level: 0,
-                precision,
+                quantization_bits,
                 vertices: row.vertices,
-                faces: row.faces,
+                faces: row.triangles,
                 bytes,
                 attribute_bytes,
                 glue_bytes: 0,
@@ -416,9 +416,9 @@ pub(super) fn list_passes(
             (action, Some(before)) => PassInfo {
                 kind: if action == Action::Split { PassKind::Split } else { PassKind::Refine },
                 level: before.level + u32::from(action == Action::Split),
-                precision: before.precision + u32::from(action == Action::Refine),
+                quantization_bits: before.quantization_bits + u32::from(action == Action::Refine),
                 vertices: before.vertices + row.vertices,
-                faces: before.faces + row.faces,
+                faces: before.triangles + row.triangles,
                 bytes,
                 attribute_bytes,
                 glue_bytes: 0,

@@ -12,7 +12,7 @@ pub struct LevelMesh<'a> {
     pub(super) cells: &'a [[i32; 3]],
     pub(super) triangles: &'a [[u32; 3]],
     pub(super) grid: &'a Grid,
-    pub(super) precision: u32,
+    pub(super) quantization_bits: u32,
     pub(super) level: u32,
     pub(super) compensation: Compensation,
     pub(super) extras: &'a Extras,
@@ -25,8 +25,8 @@ impl<'a> LevelMesh<'a> {
     }
 
     /// Bits per coordinate that are known so far.
-    pub fn precision(&self) -> u32 {
-        self.precision
+    pub fn quantization_bits(&self) -> u32 {
+        self.quantization_bits
     }
 
     /// Number of vertices.
@@ -45,7 +45,7 @@ impl<'a> LevelMesh<'a> {
     }
 
     /// Grid cells of the vertices, n × 3, each below 2^[`precision`](Self::precision).
-    pub fn cells(&self) -> &'a [[i32; 3]] {
+    pub fn quantized_positions(&self) -> &'a [[i32; 3]] {
         self.cells
     }
 
@@ -53,18 +53,18 @@ impl<'a> LevelMesh<'a> {
     ///
     /// # Panics
     /// If there is no such vertex.
-    pub fn cell_middle(&self, vertex: usize) -> [f64; 3] {
-        self.grid.position(self.cells[vertex], self.precision)
+    pub fn dequantize(&self, vertex: usize) -> [f64; 3] {
+        self.grid.position(self.cells[vertex], self.quantization_bits)
     }
 
     /// Whether vertices are shown off the middles of their cells, see [`positions`](Self::positions).
-    pub fn is_compensated(&self) -> bool {
+    pub fn has_shrinkage_compensation(&self) -> bool {
         self.compensation != Compensation::NONE
     }
 
     /// Positions in model units, in order. A coarse mesh whose vertices lie on a curved surface lies inside of it: until
     /// the last pass vertices are shown a little further out, as far as the encoder found to be best, unless
-    /// [`DecodeOptions::compensate`](crate::DecodeOptions::compensate) says otherwise.
+    /// [`DecodeOptions::shrinkage_compensation`](crate::DecodeOptions::shrinkage_compensation) says otherwise.
     pub fn positions(&self) -> Vec<[f64; 3]> {
         let mut placing = PositionUpdater::new(self);
         placing.advance(self, usize::MAX);
@@ -80,13 +80,13 @@ impl<'a> LevelMesh<'a> {
     }
 
     /// The cut surface itself, in model units: a copy that owns its arrays.
-    pub fn to_cut_mesh(&self) -> TriMesh {
+    pub fn to_manifold_mesh(&self) -> TriMesh {
         TriMesh::from_decoded_parts(self.positions(), self.triangles.to_vec())
     }
 
     /// For each vertex of this cut surface the vertex of the joined one, and the number of those: before
     /// loose vertices follow and any order is restored, that of [`to_tri_mesh`](Self::to_tri_mesh).
-    pub fn joined_vertices(&self) -> (Vec<u32>, usize) {
+    pub fn stitched_vertices(&self) -> (Vec<u32>, usize) {
         let joined = self.extras.joined(self.cells.len());
         (joined.place, joined.first.len())
     }
@@ -95,10 +95,10 @@ impl<'a> LevelMesh<'a> {
     /// platform for the same prefix of a stream.
     pub fn checksum(&self) -> u32 {
         let mut hash = crc32fast::Hasher::new();
-        for count in [self.num_vertices() as u32, self.num_triangles() as u32, self.precision] {
+        for count in [self.num_vertices() as u32, self.num_triangles() as u32, self.quantization_bits] {
             hash.update(&count.to_le_bytes());
         }
-        for &c in self.cells().iter().flatten() {
+        for &c in self.quantized_positions().iter().flatten() {
             hash.update(&c.to_le_bytes());
         }
         for &v in self.triangles().iter().flatten() {
@@ -114,7 +114,7 @@ pub struct PositionUpdater(Option<Mover>);
 impl PositionUpdater {
     /// Of `mesh`, and of no other.
     pub fn new(mesh: &LevelMesh) -> Self {
-        Self(mesh.is_compensated().then(|| Mover::new(mesh.num_vertices())))
+        Self(mesh.has_shrinkage_compensation().then(|| Mover::new(mesh.num_vertices())))
     }
 
     /// Goes on with at most `elements` vertices and triangles; once all positions are known, returns how many of these are
@@ -131,9 +131,9 @@ impl PositionUpdater {
     /// # Panics
     /// If there is no such vertex.
     pub fn position(&self, mesh: &LevelMesh, vertex: usize) -> [f64; 3] {
-        let middle = mesh.cell_middle(vertex);
+        let middle = mesh.dequantize(vertex);
         let Some(mover) = &self.0 else { return middle };
-        let step = mesh.grid.step(mesh.precision);
+        let step = mesh.grid.step(mesh.quantization_bits);
         let moved = mover.moved(vertex, mesh.compensation);
         std::array::from_fn(|axis| middle[axis] + moved[axis] * step)
     }
@@ -143,7 +143,7 @@ impl std::fmt::Debug for LevelMesh<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("LevelMesh")
             .field("level", &self.level)
-            .field("precision", &self.precision)
+            .field("quantization_bits", &self.quantization_bits)
             .field("vertices", &self.num_vertices())
             .field("triangles", &self.num_triangles())
             .finish()

@@ -8,7 +8,7 @@ use crate::limits::Limits;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DecodeOptions {
     level: Option<u32>,
-    uncompensated: bool,
+    no_shrinkage_compensation: bool,
     pub(super) limits: Limits,
 }
 
@@ -28,8 +28,8 @@ impl DecodeOptions {
     /// Whether coarse meshes are shown with their vertices a little off their places, so that they shrink less. Default
     /// true: closer to the surface by half a dB to one and a half on scans. Without it the vertices of each level are
     /// some of those of the finest.
-    pub fn compensate(mut self, compensate: bool) -> Self {
-        self.uncompensated = !compensate;
+    pub fn shrinkage_compensation(mut self, is_wanted: bool) -> Self {
+        self.no_shrinkage_compensation = !is_wanted;
         self
     }
 
@@ -46,6 +46,6 @@ impl DecodeOptions {
 
     /// How the mesh is shown after a pass.
     pub(super) fn compensation_after(&self, pass: &PassInfo) -> Compensation {
-        if self.uncompensated { Compensation::NONE } else { pass.compensation }
+        if self.no_shrinkage_compensation { Compensation::NONE } else { pass.compensation }
     }
 }

@@ -45,7 +45,7 @@ impl Models {
 
 /// Bytes of memory that a vertex and a face of the finest mesh may take, working space included.
 const BYTES_PER_VERTEX: u64 = 64;
-const BYTES_PER_FACE: u64 = 72;
+const BYTES_PER_TRIANGLE: u64 = 72;
 
 /// Bytes of memory that the models may take.
 const fn bytes_of_models(mixing: Mixing) -> u64 {
@@ -72,11 +72,12 @@ impl PassDecoder {
 
     /// Bytes of memory that a pass may take, the buffer of the stream not counted.
     pub(super) fn memory_for(&self, pass: &PassInfo) -> u64 {
-        let base = if let Action::Base { .. } = pass.row.action { 160 * u64::from(pass.faces) } else { 0 };
+        let base =
+            if let Action::Base { .. } = pass.row.action { 160 * u64::from(pass.triangles) } else { 0 };
         bytes_of_models(self.profile.mixing())
             + base
             + BYTES_PER_VERTEX * u64::from(pass.vertices)
-            + BYTES_PER_FACE * u64::from(pass.faces)
+            + BYTES_PER_TRIANGLE * u64::from(pass.triangles)
     }
 
     /// Checks a pass against the limits before anything is allocated for it. `held`: bytes that are taken besides.
@@ -105,7 +106,7 @@ impl PassDecoder {
     ) -> Result<Option<(Changes, Patches)>, Malformed> {
         let result = running.advance(self, pass, payload, work).map(|patches| {
             let patches = patches?;
-            work.sweep(pass.faces as usize);
+            work.sweep(pass.triangles as usize);
             Some((Changes::of(pass, &patches), patches))
         });
         if result.is_err() {
@@ -158,8 +159,8 @@ impl Changes {
     fn of(pass: &PassInfo, patches: &Patches) -> Self {
         let (first_vertex, first_new_face) = match pass.kind {
             PassKind::Base => (0, 0),
-            PassKind::Split => (pass.vertices - pass.row.vertices, pass.faces - pass.row.faces),
-            PassKind::Refine => (0, pass.faces),
+            PassKind::Split => (pass.vertices - pass.row.vertices, pass.triangles - pass.row.triangles),
+            PassKind::Refine => (0, pass.triangles),
         };
         Self {
             first_vertex,

@@ -121,7 +121,7 @@ impl Running {
         let PassDecoder { mesh, models, profile } = decoder;
         let mixing = profile.mixing();
         let models = models.get_or_insert_with(|| Models::new(mixing));
-        let (vertices, faces) = (pass.row.vertices as usize, pass.row.faces as usize);
+        let (vertices, faces) = (pass.row.vertices as usize, pass.row.triangles as usize);
         while work.is_left() {
             self.stage = match std::mem::replace(&mut self.stage, Stage::Over) {
                 Stage::Begin => self.begin(mesh, pass, mixing, work),
@@ -178,7 +178,7 @@ impl Running {
                         if B::HAS_STREAMS {
                             let GridMesh { positions, roughness, .. } = &mut *mesh;
                             let mut known = Located { positions, roughness };
-                            let limit = 1 << pass.precision;
+                            let limit = 1 << pass.quantization_bits;
                             coordinates_fast::code_vertex(
                                 coder, &mut known, &patches, next, star, limit, [0; 3],
                             )?;
@@ -194,7 +194,7 @@ impl Running {
                     }
                 }
                 Stage::Coordinates(patches) => {
-                    let bits = pass.precision;
+                    let bits = pass.quantization_bits;
                     if coordinates::code_some(
                         coder,
                         &mut models.coordinates,
@@ -241,9 +241,9 @@ impl Running {
         work: &mut WorkBudget,
     ) -> Stage {
         match (pass.kind, pass.row.action) {
-            (_, Action::Base { precision }) => {
-                let (vertices, faces) = (pass.vertices as usize, pass.faces as usize);
-                Stage::Base(Box::new(Grower::new(vertices, faces, precision, mixing, None)))
+            (_, Action::Base { quantization_bits }) => {
+                let (vertices, faces) = (pass.vertices as usize, pass.triangles as usize);
+                Stage::Base(Box::new(Grower::new(vertices, faces, quantization_bits, mixing, None)))
             }
             (PassKind::Refine, _) => Stage::Double(Vec::with_capacity(mesh.positions.len())),
             _ => {
@@ -258,7 +258,7 @@ impl Running {
 /// vertex that gets coordinates, and the head.
 fn most_stream_bytes(pass: &PassInfo) -> u64 {
     let new = if pass.kind == PassKind::Split { pass.row.vertices } else { 0 };
-    1024 + u64::from(pass.faces) + u64::from(pass.vertices) + 16 * u64::from(new)
+    1024 + u64::from(pass.triangles) + u64::from(pass.vertices) + 16 * u64::from(new)
 }
 
 /// At the end of a pass what was read must have been there.

@@ -25,7 +25,7 @@ impl CutMesh<'_> {
     /// Shown like `complete`, the mesh before the pass.
     fn shown_like<'b>(&'b self, complete: LevelMesh<'b>) -> LevelMesh<'b> {
         let (cells, triangles) = (&self.mesh.positions[..], &self.mesh.surface.triangles[..]);
-        LevelMesh { cells, triangles, precision: self.pass.precision, ..complete }
+        LevelMesh { cells, triangles, quantization_bits: self.pass.quantization_bits, ..complete }
     }
 }
 
@@ -40,8 +40,8 @@ impl<'a> Snapshot<'a> {
             None => (&mesh.positions[..], &mesh.surface.triangles[..]),
         };
         let compensation = options.compensation_after(pass);
-        let (grid, precision, level) = (&info.grid, pass.precision, pass.level);
-        Some(LevelMesh { cells, triangles, grid, precision, level, compensation, extras })
+        let (grid, quantization_bits, level) = (&info.grid, pass.quantization_bits, pass.level);
+        Some(LevelMesh { cells, triangles, grid, quantization_bits, level, compensation, extras })
     }
 
     /// The mesh with what has arrived of the next pass.

@@ -203,20 +203,20 @@ impl StreamingDecoder {
             return Ok(Step::Unfinished);
         };
         let is_shown_elsewhere =
-            self.last_pass().into_iter().chain([&pass]).any(|pass| self.is_compensated(pass));
+            self.last_pass().into_iter().chain([&pass]).any(|pass| self.has_shrinkage_compensation(pass));
         self.done += 1;
         self.await_companions(&pass, patches, changes.first_vertex as usize);
         let first_vertex = if is_shown_elsewhere { 0 } else { changes.first_vertex };
         Ok(Step::Finished(Update {
             pass,
             vertices: first_vertex..pass.vertices,
-            new_triangles: changes.first_new_face..pass.faces,
+            new_triangles: changes.first_new_face..pass.triangles,
             rewritten_triangles: changes.rewritten_faces,
         }))
     }
 
     /// Whether vertices are shown off their places after a pass.
-    fn is_compensated(&self, pass: &PassInfo) -> bool {
+    fn has_shrinkage_compensation(&self, pass: &PassInfo) -> bool {
         self.options.compensation_after(pass) != Compensation::NONE
     }
 

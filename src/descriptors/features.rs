@@ -201,7 +201,7 @@ fn range(column: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Domain, NO_ROW, Semantic, Values};
+    use crate::mesh::{Domain, NO_ENTRY, Semantic, Values};
 
     fn square() -> TriMesh {
         let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn corners_are_averaged_and_gaps_are_neutral() {
-        let indices = Some(vec![0, 1, NO_ROW, 1, NO_ROW, 2]);
+        let indices = Some(vec![0, 1, NO_ENTRY, 1, NO_ENTRY, 2]);
         let values = Values::F32(vec![0.0, 4.0, f32::NAN]);
         let shade =
             Attribute { indices, ..Attribute::new("s", Semantic::Generic, Domain::Corner, 1, values) };
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn what_has_no_distance_is_refused() {
         let names = Values::Names(vec!["wood".into(); 2]);
-        let material = Attribute::new("m", Semantic::Material, Domain::Face, 1, names);
+        let material = Attribute::new("m", Semantic::Material, Domain::Triangle, 1, names);
         let error = FeaturesError::Names { name: "m".into() };
         assert_eq!(Features::new(&square(), &[(&material, 1.0)]), Err(error));
         let wide = Attribute::new("w", Semantic::Generic, Domain::Vertex, 7, Values::U8(vec![0; 28]));

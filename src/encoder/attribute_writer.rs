@@ -5,7 +5,7 @@ use super::coarsen::Hierarchy;
 use super::padded;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::RangeEncoder;
-use crate::mesh::{Domain, NO_ROW};
+use crate::mesh::{Domain, NO_ENTRY};
 use crate::passes::GridMesh;
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
 use crate::passes::attribute::{Brought, Desk, Layer, Rows, Truth};
@@ -52,7 +52,7 @@ impl<'a> AttributeWriter<'a> {
         for (attribute, truth) in self.quantised.list.iter().zip(&mut self.truth) {
             let Some(track) = attribute.track else { continue };
             let rows = hierarchy.seams.rows(track);
-            if attribute.declaration.domain == Domain::Face {
+            if attribute.declaration.domain == Domain::Triangle {
                 truth.extend(face_source.iter().map(|&slot| rows[slot as usize]));
                 continue;
             }
@@ -77,11 +77,11 @@ impl<'a> AttributeWriter<'a> {
             for (i, &face) in star.faces.iter().enumerate() {
                 let place = removed.first_face + (shift + i) % removed.faces.len();
                 let face = face as usize;
-                if attribute.declaration.domain == Domain::Face {
-                    truth.resize(truth.len().max(face + 1), NO_ROW);
+                if attribute.declaration.domain == Domain::Triangle {
+                    truth.resize(truth.len().max(face + 1), NO_ENTRY);
                     truth[face] = rows[place];
                 } else {
-                    truth.resize(truth.len().max(3 * face + 3), NO_ROW);
+                    truth.resize(truth.len().max(3 * face + 3), NO_ENTRY);
                     truth[3 * face..3 * face + 3].copy_from_slice(&rows[3 * place..3 * place + 3]);
                 }
             }

@@ -4,7 +4,7 @@ use super::options::{EncodeOptions, Input};
 use crate::bitstream::scene;
 use crate::error::EncodeError;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Domain, NO_ROW, ScalarType, Semantic, Values};
+use crate::mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values};
 use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};
@@ -30,7 +30,7 @@ pub(super) struct QuantisedAttribute {
     pub(super) declaration: Declaration,
     /// Different rows, channel by channel.
     pub(super) rows: Vec<i32>,
-    /// The row of each vertex, corner or face of the surface, or [`NO_ROW`].
+    /// The row of each vertex, corner or face of the surface, or [`NO_ENTRY`].
     pub(super) of: Vec<u32>,
     /// The row of each loose element of the mesh.
     pub(super) loose: HashMap<u32, u32>,
@@ -75,7 +75,7 @@ impl Elements<'_> {
         match domain {
             Domain::Vertex => self.vertices.to_vec(),
             Domain::Corner => self.corners.iter().flat_map(|&c| turns(c)).collect(),
-            Domain::Face => self.corners.iter().map(|c| c / 3).collect(),
+            Domain::Triangle => self.corners.iter().map(|c| c / 3).collect(),
         }
     }
 }
@@ -109,18 +109,18 @@ pub(super) fn quantise(
         if quantised.list.len() == MAX_ATTRIBUTES {
             return Err(fail(format!("a stream holds {MAX_ATTRIBUTES} attributes")));
         }
-        let row = |&element: &u32| attribute.row(element as usize).map_or(NO_ROW, |row| row as u32);
+        let row = |&element: &u32| attribute.entry(element as usize).map_or(NO_ENTRY, |row| row as u32);
         let mut of: Vec<u32> = surface.of(attribute.domain).iter().map(row).collect();
         let num_on_surface = of.len();
         let loose = loose.of(attribute.domain);
         of.extend(loose.iter().map(row));
-        let is_dropped = |row: u32| row != NO_ROW && !is_finite(attribute, row as usize);
+        let is_dropped = |row: u32| row != NO_ENTRY && !is_finite(attribute, row as usize);
         for row in of.iter_mut().filter(|row| is_dropped(**row)) {
-            *row = NO_ROW;
+            *row = NO_ENTRY;
             quantised.values_dropped += usize::from(!options.lossless);
         }
-        let used = compact(&mut of, attribute.num_rows());
-        let has_missing = of.contains(&NO_ROW);
+        let used = compact(&mut of, attribute.num_entries());
+        let has_missing = of.contains(&NO_ENTRY);
         let coding = choose(attribute, &used, options)
             .ok_or_else(|| fail(format!("more than {MAX_TABLE} different names")))?;
         let declaration = Declaration {
@@ -129,7 +129,7 @@ pub(super) fn quantise(
             domain: attribute.domain,
             num_components: attribute.num_components,
             is_normalized: attribute.is_normalized,
-            scalar: attribute.values.scalar_type(),
+            scalar: attribute.values.component_type(),
             has_missing,
             coding,
         };
@@ -153,11 +153,11 @@ fn is_finite(attribute: &Attribute, row: usize) -> bool {
 
 /// Renumbers rows by their first use; returns those that are used.
 fn compact(of: &mut [u32], num_rows: usize) -> Vec<u32> {
-    let mut place = vec![NO_ROW; num_rows];
+    let mut place = vec![NO_ENTRY; num_rows];
     let mut used = Vec::new();
-    for row in of.iter_mut().filter(|row| **row != NO_ROW) {
+    for row in of.iter_mut().filter(|row| **row != NO_ENTRY) {
         let place = &mut place[*row as usize];
-        if *place == NO_ROW {
+        if *place == NO_ENTRY {
             *place = used.len() as u32;
             used.push(*row);
         }
@@ -169,15 +169,15 @@ fn compact(of: &mut [u32], num_rows: usize) -> Vec<u32> {
 /// How the rows are coded: names, and numbers that tell things apart, by a table; directions on the octahedron; all
 /// others uniformly, integers that fit exactly. `None` if a table would be too long for names.
 fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOptions) -> Option<Coding> {
-    let Some(scalar) = attribute.values.scalar_type() else { return table(attribute, used) };
+    let Some(scalar) = attribute.values.component_type() else { return table(attribute, used) };
     let is_label = matches!(attribute.semantic, Semantic::Material | Semantic::Group | Semantic::Object)
-        || attribute.domain == Domain::Face && scalar.is_integer();
+        || attribute.domain == Domain::Triangle && scalar.is_integer();
     if is_label && let Some(table) = table(attribute, used) {
         return Some(table);
     }
     let bits = match attribute.semantic {
         Semantic::Normal => options.normal_bits,
-        Semantic::TexCoord(_) => options.uv_bits,
+        Semantic::TexCoord(_) => options.texcoord_bits,
         Semantic::Color(_) => options.color_bits,
         _ => options.generic_bits,
     };
@@ -215,7 +215,7 @@ fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOptions) -> Optio
 }
 
 /// Whether vectors have unit length, to a tenth.
-fn are_directions(attribute: &Attribute, used: &[u32], scalar: ScalarType) -> bool {
+fn are_directions(attribute: &Attribute, used: &[u32], scalar: ComponentType) -> bool {
     if scalar.is_integer() && !attribute.is_normalized {
         return false;
     }
@@ -313,7 +313,7 @@ impl QuantisedAttribute {
             })
             .collect();
         let of = self.of.iter_mut().chain(self.loose.values_mut());
-        of.filter(|row| **row != NO_ROW).for_each(|row| *row = place[*row as usize]);
+        of.filter(|row| **row != NO_ENTRY).for_each(|row| *row = place[*row as usize]);
         self.rows = rows;
     }
 }

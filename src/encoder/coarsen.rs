@@ -52,7 +52,7 @@ pub(super) fn analyse(
 ) -> Hierarchy {
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
     // Near 1, so that squares neither overflow nor vanish.
-    let steps_per_unit = f64::from(1_u32 << options.quantization);
+    let steps_per_unit = f64::from(1_u32 << options.quantization_bits);
     let positions: Vec<[f64; 3]> = cells.iter().map(|c| c.map(|c| f64::from(c) / steps_per_unit)).collect();
     let mesh = TriMesh::from_valid_parts(positions.clone(), surface.triangles.clone());
     let geometry = Geometry { grid: cells, positions: &positions };

@@ -7,7 +7,7 @@ use crate::passes::attribute::Declarations;
 use crate::passes::cost::{self, Counts, Ledger};
 
 /// Appends zeros to the payloads of passes until each has earned what it costs by its end, with the `values` after it.
-/// The last one also earns what the chunks after it cost. `loose`: vertices and faces in these that no pass brings.
+/// The last one also earns what the chunks after it cost. `loose`: vertices and triangles in these that no pass brings.
 pub(super) fn pad(
     passes: &mut [WrittenPass],
     values: &[Vec<u8>],
@@ -42,14 +42,14 @@ mod tests {
     use crate::bitstream::header::{Action, Pass};
 
     fn pass(action: Action, vertices: u32, bytes: u32) -> WrittenPass {
-        let row = Pass { action, vertices, faces: 2 * vertices, bytes };
+        let row = Pass { action, vertices, triangles: 2 * vertices, bytes };
         let payload = vec![1; bytes as usize];
         WrittenPass { row, payload, glue: None, compensation: Compensation::NONE }
     }
 
     #[test]
     fn only_what_costs_more_than_it_earns_becomes_longer() {
-        let base = || pass(Action::Base { precision: 8 }, 4000, 4000);
+        let base = || pass(Action::Base { quantization_bits: 8 }, 4000, 4000);
         let mut honest = [base(), pass(Action::Split, 2000, 3000)];
         pad(&mut honest, &[], &Declarations::default(), &[], 0);
         assert_eq!(honest.map(|pass| pass.row.bytes), [4000, 3000]);

@@ -44,7 +44,7 @@ impl GridSurface {
         let (surface, source) = cut(triangles, ordered.cells.len());
         check_count(source.len())?;
         let repair = RepairReport {
-            degenerate_faces: if options.keep_degenerate { 0 } else { mesh.num_triangles() - num_usable },
+            degenerate_triangles: if options.keep_degenerate { 0 } else { mesh.num_triangles() - num_usable },
             isolated_vertices: mesh.num_vertices() - ordered.cells.len() - loose.vertices.len(),
             repeated_vertices: source.len() - ordered.cells.len(),
         };
@@ -111,7 +111,7 @@ fn check_count(num_vertices: usize) -> Result<(), EncodeError> {
 fn grid_around(Input { mesh, options, .. }: Input, loose: &LooseElements) -> Result<Grid, EncodeError> {
     let usable = mesh.triangles().iter().filter(|t| has_three_vertices(t));
     let points = usable.flatten().chain(&loose.vertices).map(|&v| mesh.positions()[v as usize]);
-    quantise::grid_around(points, options.quantization)
+    quantise::grid_around(points, options.quantization_bits)
 }
 
 /// Orders the usable triangles, their vertices and the loose elements. Signatures are made where places do not tell all

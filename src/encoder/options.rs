@@ -36,7 +36,7 @@ pub struct EncodeOptions {
     /// Bits of each of the two coordinates of a normal on the octahedron, 2 to 30. Default 8.
     pub normal_bits: u32,
     /// Bits of a texture coordinate, 1 to 30. Default 10.
-    pub uv_bits: u32,
+    pub texcoord_bits: u32,
     /// Bits of a component of a colour, 1 to 30. Default 8: colours of 8 bits are kept exactly.
     pub color_bits: u32,
     /// Bits of a component of any other attribute, 1 to 30. Integers that fit are kept exactly. Default 12.
@@ -73,7 +73,7 @@ impl Default for EncodeOptions {
             optimize: Optimize::default(),
             steps_per_edge: None,
             normal_bits: 8,
-            uv_bits: 10,
+            texcoord_bits: 10,
             color_bits: 8,
             generic_bits: 12,
             keep_isolated: false,
@@ -104,7 +104,7 @@ impl EncodeOptions {
     pub(super) fn hierarchies_tried(&self) -> Vec<Attempt> {
         let usual = Attempt { levels: self.levels, max_valence: None };
         let mut tried = vec![usual];
-        let is_for_size = self.optimize == Optimize::Size && self.partition == Partition::Balanced;
+        let is_for_size = self.optimize == Optimize::Size && self.partition == Partition::WeightedError;
         if is_for_size && self.effort >= Self::HIGHEST_EFFORT {
             tried.extend([5, 7].map(|valence| Attempt { max_valence: Some(valence), ..usual }));
         }
@@ -129,12 +129,12 @@ impl EncodeOptions {
 
     pub(super) fn check(&self) -> Result<(), EncodeError> {
         let fail = |option, value: String, allowed| Err(EncodeError::Option { option, value, allowed });
-        if !(1..=30).contains(&self.quantization) {
-            return fail("quantization", self.quantization.to_string(), "1 to 30 bits");
+        if !(1..=30).contains(&self.quantization_bits) {
+            return fail("quantization", self.quantization_bits.to_string(), "1 to 30 bits");
         }
         for (option, bits, least) in [
             ("normal bits", self.normal_bits, 2),
-            ("uv bits", self.uv_bits, 1),
+            ("texcoord bits", self.texcoord_bits, 1),
             ("color bits", self.color_bits, 1),
             ("generic bits", self.generic_bits, 1),
         ] {

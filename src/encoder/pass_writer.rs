@@ -29,9 +29,9 @@ pub(super) struct PassWriter<'a> {
     /// Those of the full surface at full precision.
     cells: &'a [[i32; 3]],
     num_faces: usize,
-    full_precision: u32,
+    full_bits: u32,
     pub(super) profile: Profile,
-    precision: u32,
+    quantization_bits: u32,
     pub(super) mesh: GridMesh,
     coordinates: CoordinateModels,
     refine: RefineModels,
@@ -47,19 +47,19 @@ impl<'a> PassWriter<'a> {
         original: &Original<'a>,
         points: &'a [Point],
         hierarchy: &Hierarchy,
-        precision: u32,
+        quantization_bits: u32,
     ) -> (Self, Numbering) {
         let Original { input, on_grid, quantised } = *original;
         let (profile, cells) = (input.options.profile_used(), &on_grid.cells[..]);
-        let (mixing, full_precision) = (profile.mixing(), on_grid.grid.precision);
-        let (coded, payload) = code_base(hierarchy, cells, [full_precision, precision], mixing);
+        let (mixing, full_bits) = (profile.mixing(), on_grid.grid.quantization_bits);
+        let (coded, payload) = code_base(hierarchy, cells, [full_bits, quantization_bits], mixing);
         let numbering = Numbering::of_base(&coded, hierarchy);
         let mut writer = Self {
             cells,
             num_faces: hierarchy.num_faces,
-            full_precision,
+            full_bits,
             profile,
-            precision,
+            quantization_bits,
             mesh: coded.mesh,
             coordinates: CoordinateModels::new(mixing),
             refine: RefineModels::new(mixing),
@@ -75,8 +75,8 @@ impl<'a> PassWriter<'a> {
     fn finish_base(&mut self, payload: Vec<u8>, hierarchy: &Hierarchy, numbering: &Numbering) {
         let (num_vertices, num_faces) = (self.mesh.positions.len(), self.mesh.surface.triangles.len());
         self.mesh.reserve(hierarchy.num_vertices - num_vertices, hierarchy.num_faces - num_faces);
-        let action = Action::Base { precision: self.precision };
-        let row = Pass { action, vertices: num_vertices as u32, faces: num_faces as u32, bytes: 0 };
+        let action = Action::Base { quantization_bits: self.quantization_bits };
+        let row = Pass { action, vertices: num_vertices as u32, triangles: num_faces as u32, bytes: 0 };
         self.finish_pass(row, num_vertices.max(num_faces), payload, numbering);
         self.attributes.base(&self.mesh, hierarchy, &numbering.vertex_source, &numbering.face_source);
     }
@@ -98,7 +98,7 @@ impl<'a> PassWriter<'a> {
 
     /// Bits of the coordinates that have not been coded yet.
     pub(super) fn hidden_bits(&self) -> u32 {
-        self.full_precision - self.precision
+        self.full_bits - self.quantization_bits
     }
 
     /// Codes so many refinements.
@@ -108,14 +108,14 @@ impl<'a> PassWriter<'a> {
 
     /// Codes one more bit of all coordinates.
     fn refine(&mut self, numbering: &Numbering) {
-        self.precision += 1;
+        self.quantization_bits += 1;
         let target = self.cells_now(numbering.vertex_source.iter().copied());
         let payload = match self.profile {
             Profile::Max | Profile::Small => self.code_refinement(&target),
             Profile::Fast => self.code_refinement_in_streams(&target),
         };
         debug_assert_eq!(self.mesh.positions, target);
-        let row = Pass { action: Action::Refine, vertices: 0, faces: 0, bytes: 0 };
+        let row = Pass { action: Action::Refine, vertices: 0, triangles: 0, bytes: 0 };
         self.finish_pass(row, target.len(), payload, numbering);
         self.attributes.refine();
     }
@@ -138,9 +138,9 @@ impl<'a> PassWriter<'a> {
     /// Codes where the vertices of `record` are, which have been brought back.
     pub(super) fn split(&mut self, record: &LevelRecord, found: Found, numbering: &Numbering) {
         let Found { mut coder, patches, odd } = found;
-        let (wanted, precision) = (self.cells_of(record, &odd), self.precision);
+        let (wanted, quantization_bits) = (self.cells_of(record, &odd), self.quantization_bits);
         let (models, mesh) = (&mut self.coordinates, &mut self.mesh);
-        expect_sound(coordinates::code(&mut coder, models, mesh, &patches, precision, Some(&wanted)));
+        expect_sound(coordinates::code(&mut coder, models, mesh, &patches, quantization_bits, Some(&wanted)));
         self.finish_split(&patches, coder.finish(), numbering);
     }
 
@@ -153,7 +153,7 @@ impl<'a> PassWriter<'a> {
     ) {
         let mut coder = StreamWriter::new(record.len() as u32);
         let (patches, odd) = search.find_with(&mut coder, &self.mesh, numbering, record);
-        let (wanted, limit) = (self.cells_of(record, &odd), 1 << self.precision);
+        let (wanted, limit) = (self.cells_of(record, &odd), 1 << self.quantization_bits);
         self.restore(record, &patches, &odd, numbering, |mesh, patches, j, star| {
             let GridMesh { positions, roughness, .. } = mesh;
             let mut known = Located { positions, roughness };
@@ -219,15 +219,15 @@ impl<'a> PassWriter<'a> {
 fn code_base(
     hierarchy: &Hierarchy,
     cells: &[[i32; 3]],
-    [full_precision, precision]: [u32; 2],
+    [full_bits, quantization_bits]: [u32; 2],
     mixing: Mixing,
 ) -> (Base, Vec<u8>) {
-    let hidden = full_precision - precision;
+    let hidden = full_bits - quantization_bits;
     let positions: Vec<[i32; 3]> =
         hierarchy.base_vertices.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)).collect();
     let target = BaseTarget { surface: &hierarchy.base, positions: &positions };
     let (num_vertices, num_faces) = (positions.len(), hierarchy.base.triangles.len());
     let mut coder = RangeEncoder::new();
-    let coded = base::code(&mut coder, num_vertices, num_faces, precision, mixing, Some(&target));
+    let coded = base::code(&mut coder, num_vertices, num_faces, quantization_bits, mixing, Some(&target));
     (expect_sound(coded), coder.finish())
 }

@@ -19,9 +19,9 @@ pub(crate) struct Model {
 }
 
 /// Quantises the vertices `source` of `mesh`; there is at least one.
-pub(crate) fn quantise(mesh: &TriMesh, source: &[u32], precision: u32) -> Result<Model, EncodeError> {
+pub(crate) fn quantise(mesh: &TriMesh, source: &[u32], quantization_bits: u32) -> Result<Model, EncodeError> {
     let at = |v: u32| mesh.positions()[v as usize];
-    let grid = grid_around(source.iter().map(|&v| at(v)), precision)?;
+    let grid = grid_around(source.iter().map(|&v| at(v)), quantization_bits)?;
     let unit = unit_near(grid.side);
     Ok(Model {
         cells: source.iter().map(|&v| grid.cell(at(v))).collect(),
@@ -39,7 +39,7 @@ const MAX_ROUNDS: usize = 64;
 /// If they span more than a double can hold.
 pub(crate) fn grid_around(
     mut points: impl Iterator<Item = [f64; 3]>,
-    precision: u32,
+    quantization_bits: u32,
 ) -> Result<Grid, EncodeError> {
     let first = points.next().unwrap_or_default();
     let (low, high) = points.fold((first, first), |(low, high), p| {
@@ -47,14 +47,14 @@ pub(crate) fn grid_around(
     });
     let longest = |high: [f64; 3]| (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
     let fits = |side: f64| side.is_finite() && low.iter().all(|l| (l + side).is_finite());
-    let mut grid = Grid { precision, origin: low.map(|l| l + 0.0), side: longest(high) };
+    let mut grid = Grid { quantization_bits, origin: low.map(|l| l + 0.0), side: longest(high) };
     if !fits(grid.side) {
         return Err(EncodeError::BoundingBox);
     }
     // The decoded points must span the same grid, so that encoding them again gives the same bytes; the
     // sum of origin and side is rounded.
     for _ in 0..MAX_ROUNDS {
-        let again = longest(grid.position(grid.cell(high), precision));
+        let again = longest(grid.position(grid.cell(high), quantization_bits));
         if again == grid.side || !fits(again) {
             break;
         }

@@ -5,7 +5,7 @@ use super::options::EncodeOptions;
 
 /// The precision of each pass. Splits bring back the records of the hierarchy, coarsest first.
 pub(super) struct Schedule {
-    pub(super) base_precision: u32,
+    pub(super) base_bits: u32,
     /// Number of refinements after the base mesh, then after each split.
     pub(super) refinements: Vec<u32>,
 }
@@ -18,7 +18,7 @@ const ROUNDING_SHARE: f64 = 0.25;
 pub(super) fn tried(hierarchy: &Hierarchy, options: &EncodeOptions) -> impl Iterator<Item = Schedule> {
     let is_one = options.steps_per_edge.is_some() || hierarchy.records.is_empty();
     let tried = if is_one { &[None] } else { options.steps_tried() };
-    tried.iter().map(|&steps| plan(hierarchy, options.quantization, options.steps_per_edge.or(steps)))
+    tried.iter().map(|&steps| plan(hierarchy, options.quantization_bits, options.steps_per_edge.or(steps)))
 }
 
 /// Each split comes with the precision its level needs; what is missing then follows the last split.
@@ -27,23 +27,23 @@ pub(super) fn tried(hierarchy: &Hierarchy, options: &EncodeOptions) -> impl Iter
 /// With `steps_per_edge` a level needs as many bits as make its mean edge that many grid steps long.
 /// Else it needs as many as keep the error of rounding (a twelfth of the squared step) below
 /// [`ROUNDING_SHARE`] of that of the level's shape.
-fn plan(hierarchy: &Hierarchy, precision: u32, steps_per_edge: Option<f64>) -> Schedule {
+fn plan(hierarchy: &Hierarchy, quantization_bits: u32, steps_per_edge: Option<f64>) -> Schedule {
     let needed = |level: usize| {
         let hidden = match steps_per_edge {
             Some(steps) => libm::log2((hierarchy.mean_edges[level] / steps).max(1.0)),
             None => 0.5 * libm::log2((12.0 * ROUNDING_SHARE * hierarchy.errors[level]).max(1.0)),
         };
-        precision.saturating_sub(hidden as u32).max(1)
+        quantization_bits.saturating_sub(hidden as u32).max(1)
     };
     let num_levels = hierarchy.records.len();
-    let base_precision = if num_levels > 0 { needed(0) } else { precision };
-    let mut current = base_precision;
+    let base_bits = if num_levels > 0 { needed(0) } else { quantization_bits };
+    let mut current = base_bits;
     let refinements_after = |level: usize| {
-        let wanted = if level < num_levels { needed(level + 1) } else { precision };
+        let wanted = if level < num_levels { needed(level + 1) } else { quantization_bits };
         let before = current;
         current = current.max(wanted);
         current - before
     };
     let refinements = (0..=num_levels).map(refinements_after).collect();
-    Schedule { base_precision, refinements }
+    Schedule { base_bits, refinements }
 }

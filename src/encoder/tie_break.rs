@@ -4,7 +4,7 @@
 use super::attributes::{Elements, quantise};
 use super::options::Input;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Domain, NO_ROW, Values};
+use crate::mesh::{Attribute, Domain, NO_ENTRY, Values};
 use crate::passes::attribute::Coding;
 
 /// A number for each element of a mesh; elements that no stream keeps have any.
@@ -22,14 +22,17 @@ impl Signatures {
             return None;
         }
         let none = |domain: Domain| vec![0; domain.num_elements(mesh)];
-        let mut all =
-            Self { vertices: none(Domain::Vertex), corners: none(Domain::Corner), faces: none(Domain::Face) };
+        let mut all = Self {
+            vertices: none(Domain::Vertex),
+            corners: none(Domain::Corner),
+            faces: none(Domain::Triangle),
+        };
         if options.lossless {
             let bits = |p: &[f64; 3]| p.iter().fold(1, |hash, x| mix(hash ^ x.to_bits()));
             all.vertices = mesh.positions().iter().map(bits).collect();
             for attribute in &attributes.list {
                 let hash = |element: usize| {
-                    attribute.row(element).map(|row| row_hash(&attribute.values, attribute, row))
+                    attribute.entry(element).map(|row| row_hash(&attribute.values, attribute, row))
                 };
                 all.add(attribute.domain, (0..attribute.domain.num_elements(mesh)).map(|k| (k, hash(k))));
             }
@@ -40,7 +43,7 @@ impl Signatures {
         for (one, attribute) in quantised.list.iter().zip(&attributes.list) {
             let n = one.declaration.num_channels();
             let hash = |row: u32| {
-                let channels = (row != NO_ROW).then(|| &one.rows[row as usize * n..][..n])?;
+                let channels = (row != NO_ENTRY).then(|| &one.rows[row as usize * n..][..n])?;
                 Some(match &one.declaration.coding {
                     Coding::Table { rows } => row_hash(rows, attribute, channels[0] as usize),
                     _ => channels.iter().fold(1, |hash, &c| mix(hash ^ c as u64)),
@@ -57,7 +60,7 @@ impl Signatures {
         let list = match domain {
             Domain::Vertex => &mut self.vertices,
             Domain::Corner => &mut self.corners,
-            Domain::Face => &mut self.faces,
+            Domain::Triangle => &mut self.faces,
         };
         for (element, hash) in values {
             list[element] = mix(list[element] ^ hash.map_or(2, mix));

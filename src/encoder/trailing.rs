@@ -129,7 +129,7 @@ impl Original<'_> {
         let counts = expect_sound(isolated_and_degenerate::code_counts(&mut coder, 0, Some(loose)));
         expect_sound(isolated_and_degenerate::code(
             &mut coder,
-            self.on_grid.grid.precision,
+            self.on_grid.grid.quantization_bits,
             num_joined,
             counts,
             Some(loose),
@@ -164,7 +164,7 @@ impl Original<'_> {
         let is_wide =
             (0..vertices.len()).any(|i| at(i).iter().any(|&x| f64::from(x as f32).to_bits() != x.to_bits()));
         let half = grid.half_step();
-        let middle = |i: usize| grid.position(grid.cell(at(i)), grid.precision);
+        let middle = |i: usize| grid.position(grid.cell(at(i)), grid.quantization_bits);
         let scales = [0, 1, 2].map(|axis| {
             let number = |i: usize| at(i)[axis];
             cheapest_scale(is_wide, vertices.len(), &number, &|i| [middle(i)[axis], half])

@@ -4,7 +4,7 @@ use super::attributes::{Quantised, QuantisedAttribute};
 use super::expect_sound;
 use super::number_format::cheapest_scale;
 use crate::entropy::range_coder::RangeEncoder;
-use crate::mesh::{Attribute, Attributes, NO_ROW, Values};
+use crate::mesh::{Attribute, Attributes, NO_ENTRY, Values};
 use crate::passes::attribute::Declaration;
 use crate::passes::float_values::{Ladder, Scale};
 use crate::passes::values::{self, Elements, Ladders, Truth};
@@ -62,14 +62,15 @@ struct Part<'a> {
 impl<'a> Part<'a> {
     fn channels(&self, row: u32) -> Option<&'a [i32]> {
         let n = self.quantised.declaration.num_channels();
-        (row != NO_ROW).then(|| &self.quantised.rows[row as usize * n..][..n])
+        (row != NO_ENTRY).then(|| &self.quantised.rows[row as usize * n..][..n])
     }
 
     /// Channels that a decoder has for an element.
     fn known(&self, element: usize) -> Option<&'a [i32]> {
         match self.elements.on_surface.get(element) {
             Some(&[there, _]) => {
-                let row = self.elements.rows.of.get(there as usize).copied().filter(|&row| row != NO_ROW)?;
+                let row =
+                    self.elements.rows.of.get(there as usize).copied().filter(|&row| row != NO_ENTRY)?;
                 Some(self.elements.rows.get(row))
             }
             None => self.loose(element - self.elements.on_surface.len()),
@@ -78,11 +79,11 @@ impl<'a> Part<'a> {
 
     fn loose(&self, i: usize) -> Option<&'a [i32]> {
         let element = self.of[self.elements.on_surface.len() + i];
-        self.channels(self.quantised.loose.get(&element).copied().unwrap_or(NO_ROW))
+        self.channels(self.quantised.loose.get(&element).copied().unwrap_or(NO_ENTRY))
     }
 
     fn row(&self, element: usize) -> Option<usize> {
-        self.attribute.row(self.of[element] as usize)
+        self.attribute.entry(self.of[element] as usize)
     }
 
     /// The kinds of the components' numbers; `None` if the channels of all rows tell their bits.
@@ -90,7 +91,7 @@ impl<'a> Part<'a> {
         let declaration = &self.quantised.declaration;
         let scalar = values::scalar_of_inexact(declaration)?;
         let n = declaration.num_components;
-        let mut is_seen: BitVec = BitVec::repeat(false, self.attribute.num_rows());
+        let mut is_seen: BitVec = BitVec::repeat(false, self.attribute.num_entries());
         let mut is_exact = true;
         let mut rows = Vec::new();
         for element in 0..self.of.len() {

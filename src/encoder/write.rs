@@ -20,7 +20,7 @@ pub(super) fn write(
     schedule: &Schedule,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Vec<u8> {
-    let (mut writer, mut numbering) = PassWriter::begin(original, points, hierarchy, schedule.base_precision);
+    let (mut writer, mut numbering) = PassWriter::begin(original, points, hierarchy, schedule.base_bits);
     writer.refine_times(schedule.refinements[0], &numbering);
     let splits = hierarchy.records.iter().rev().zip(schedule.refinements[1..].iter().copied());
     let report = |writer: &PassWriter| {

@@ -20,7 +20,7 @@ use crate::error::{DecodeError, EncodeError};
 use crate::io::{self, Format, TerrainOptions};
 use crate::limits::Limits;
 use crate::mesh::{
-    Attribute, Attributes, Domain, NO_ROW, Semantic, Surface, TriMesh, Values, has_three_vertices,
+    Attribute, Attributes, Domain, NO_ENTRY, Semantic, Surface, TriMesh, Values, has_three_vertices,
 };
 use crate::passes::cost;
 use crate::simplification::partition::Partition;
@@ -76,7 +76,7 @@ fn check_stream(stream: &[u8]) {
         assert_sound(mesh.to_tri_mesh());
     }
     if let Some(mesh) = decoder.mesh() {
-        assert_fit(&decoder.attributes(), &mesh.to_cut_mesh());
+        assert_fit(&decoder.attributes(), &mesh.to_manifold_mesh());
     }
     if let Some((preview, attributes)) = decoder.preview_with_attributes() {
         assert_fit(&attributes, &preview);
@@ -186,11 +186,11 @@ pub fn round_trip(data: &[u8]) {
         }
         decoder.mesh().into_iter().for_each(assert_valid);
         let Some(level) = decoder.mesh() else { panic!("no mesh") };
-        assert_fit(&decoder.attributes(), &level.to_cut_mesh());
+        assert_fit(&decoder.attributes(), &level.to_manifold_mesh());
     }
     assert!(decoder.is_complete());
     let Some(decoded) = decoder.mesh() else { panic!("no mesh") };
-    assert_eq!(decoded.precision(), options.quantization);
+    assert_eq!(decoded.quantization_bits(), options.quantization_bits);
     let whole = decoded.to_tri_mesh();
     let bits =
         |mesh: &TriMesh| -> Vec<u64> { mesh.positions().iter().flatten().map(|x| x.to_bits()).collect() };
@@ -204,7 +204,7 @@ pub fn round_trip(data: &[u8]) {
         used.sort_unstable();
         used.dedup();
         assert_eq!((whole.num_vertices(), whole.num_triangles()), (used.len(), usable().count()));
-        assert_eq!(cells_of(decoded), quantised(&mesh, options.quantization, encoded.info.side()));
+        assert_eq!(cells_of(decoded), quantised(&mesh, options.quantization_bits, encoded.info.side()));
     }
     let wanted = values_of(&mesh, &attributes);
     if options.lossless {
@@ -212,7 +212,7 @@ pub fn round_trip(data: &[u8]) {
         assert_fit(&found, &whole);
         assert_eq!(values_of(&whole, &found), wanted);
     } else {
-        assert_eq!(values_of(&decoded.to_cut_mesh(), &decoder.attributes()), wanted);
+        assert_eq!(values_of(&decoded.to_manifold_mesh(), &decoder.attributes()), wanted);
     }
 }
 
@@ -231,7 +231,7 @@ fn attributes_of(mesh: &TriMesh, [which, seams]: [u8; 2], is_lossless: bool) -> 
         let corners = mesh.triangles().iter().enumerate().flat_map(|(t, vs)| vs.iter().map(move |v| (t, v)));
         let values = Values::U8(corners.map(value).collect());
         let indices =
-            (0..3 * mesh.num_triangles()).map(|k| if mix(k, 3) % 97 == 0 { NO_ROW } else { k as u32 });
+            (0..3 * mesh.num_triangles()).map(|k| if mix(k, 3) % 97 == 0 { NO_ENTRY } else { k as u32 });
         attributes.list.push(Attribute {
             indices: Some(indices.collect()),
             ..Attribute::new("w", Semantic::TexCoord(0), Domain::Corner, 1, values)
@@ -242,12 +242,18 @@ fn attributes_of(mesh: &TriMesh, [which, seams]: [u8; 2], is_lossless: bool) -> 
         let indices = (0..mesh.num_triangles()).map(|t| (mix(t / every, 4) % 5) as u32).collect();
         attributes.list.push(Attribute {
             indices: Some(indices),
-            ..Attribute::new("m", Semantic::Material, Domain::Face, 1, Values::Names(names))
+            ..Attribute::new("m", Semantic::Material, Domain::Triangle, 1, Values::Names(names))
         });
     }
     if which & 8 != 0 {
         let values = (0..mesh.num_triangles()).map(|t| (mix(t, 5) / every) as i16 & 511).collect();
-        attributes.list.push(Attribute::new("f", Semantic::Generic, Domain::Face, 1, Values::I16(values)));
+        attributes.list.push(Attribute::new(
+            "f",
+            Semantic::Generic,
+            Domain::Triangle,
+            1,
+            Values::I16(values),
+        ));
     }
     if which & 16 != 0 && is_lossless {
         let bits = |k: usize| (mix(k / every, 6) as u32).rotate_left(u32::from(which >> 5));
@@ -270,7 +276,7 @@ fn values_of(mesh: &TriMesh, attributes: &Attributes) -> Vec<Vec<Option<Vec<Stri
         }
     };
     let corner = |t: usize, c: usize| {
-        let rows = attributes.list.iter().map(move |a| (a, a.row_at_corner(mesh, t, c)));
+        let rows = attributes.list.iter().map(move |a| (a, a.entry_at_corner(mesh, t, c)));
         rows.map(|(a, row)| row.map(|row| value(a, row))).collect::<Vec<_>>()
     };
     let usable = |&t: &usize| has_three_vertices(&mesh.triangles()[t]);
@@ -362,7 +368,7 @@ pub fn read_mesh(data: &[u8], format: Format) {
         assert!(again.mesh == file.mesh, "a written mesh reads differently");
         for attribute in &file.attributes.list {
             let has_values =
-                (0..attribute.domain.num_elements(&file.mesh)).any(|k| attribute.row(k).is_some());
+                (0..attribute.domain.num_elements(&file.mesh)).any(|k| attribute.entry(k).is_some());
             let is_same = |other: &Attribute| {
                 other.name == attribute.name && have_equal_values(&file.mesh, attribute, other)
             };
@@ -405,12 +411,12 @@ fn ignore_panics_of_laz() {
 fn have_equal_values(mesh: &TriMesh, a: &Attribute, b: &Attribute) -> bool {
     let n = a.num_components;
     let value = |attribute: &Attribute, triangle: usize, corner: usize| {
-        let row = attribute.row_at_corner(mesh, triangle, corner)?;
+        let row = attribute.entry_at_corner(mesh, triangle, corner)?;
         let bits: Vec<_> = (0..n).map(|k| attribute.values.bits(row * n + k)).collect();
         Some((bits, attribute.values.names().map(|names| names[row].clone())))
     };
     n == b.num_components
-        && a.values.scalar_type() == b.values.scalar_type()
+        && a.values.component_type() == b.values.component_type()
         && (0..3 * mesh.num_triangles()).all(|k| {
             let (a, b) = (value(a, k / 3, k % 3), value(b, k / 3, k % 3));
             a.is_none() || b.is_none() || a == b
@@ -428,8 +434,11 @@ fn assert_sound(mesh: TriMesh) {
 fn assert_valid(mesh: LevelMesh) {
     let surface = Surface::from_triangles(mesh.triangles().to_vec(), mesh.num_vertices());
     assert!(surface.is_ok(), "{:?}", surface.err());
-    let limit = 1 << mesh.precision();
-    assert!(mesh.cells().iter().flatten().all(|c| (0..limit).contains(c)), "a cell off the grid");
+    let limit = 1 << mesh.quantization_bits();
+    assert!(
+        mesh.quantized_positions().iter().flatten().all(|c| (0..limit).contains(c)),
+        "a cell off the grid"
+    );
 }
 
 // ---- Streams from arbitrary bytes --------------------------------------------------------------
@@ -454,14 +463,14 @@ fn stream_from(data: &[u8]) -> Vec<u8> {
 /// A well-framed stream whose counts and payloads are the input.
 fn made_up(data: &[u8]) -> Vec<u8> {
     let mut input = Input(data);
-    let precision = 1 + u32::from(input.u8()) % header::MAX_PRECISION;
-    let base_precision = 1 + u32::from(input.u8()) % precision;
-    let grid = Grid { precision, origin: [0.0; 3], side: 1.0 };
+    let quantization_bits = 1 + u32::from(input.u8()) % header::MAX_QUANTIZATION_BITS;
+    let base_bits = 1 + u32::from(input.u8()) % quantization_bits;
+    let grid = Grid { quantization_bits, origin: [0.0; 3], side: 1.0 };
     let profile = input.u8() % 2;
     let base = Pass {
-        action: Action::Base { precision: base_precision },
+        action: Action::Base { quantization_bits: base_bits },
         vertices: 3 + u32::from(input.u8()),
-        faces: 1 + u32::from(input.u16() % 512),
+        triangles: 1 + u32::from(input.u16() % 512),
         bytes: 0,
     };
     let mut passes = vec![base];
@@ -470,7 +479,7 @@ fn made_up(data: &[u8]) -> Vec<u8> {
         let on_boundary = u32::from(input.u8()).min(vertices);
         let (action, faces) =
             if vertices == 0 { (Action::Refine, 0) } else { (Action::Split, 2 * vertices - on_boundary) };
-        passes.push(Pass { action, vertices, faces, bytes: 0 });
+        passes.push(Pass { action, vertices, triangles: faces, bytes: 0 });
     }
     let mut payloads = Vec::new();
     for pass in &mut passes {
@@ -593,11 +602,11 @@ fn canonical(triangles: impl Iterator<Item = CellTriangle>) -> Vec<CellTriangle>
 }
 
 fn cells_of(mesh: LevelMesh) -> Vec<CellTriangle> {
-    canonical(mesh.triangles().iter().map(|t| t.map(|v| mesh.cells()[v as usize])))
+    canonical(mesh.triangles().iter().map(|t| t.map(|v| mesh.quantized_positions()[v as usize])))
 }
 
 /// The usable triangles of `mesh` on the grid that the vertices they use span.
-fn quantised(mesh: &TriMesh, precision: u32, side: f64) -> Vec<CellTriangle> {
+fn quantised(mesh: &TriMesh, quantization_bits: u32, side: f64) -> Vec<CellTriangle> {
     let usable = || mesh.triangles().iter().filter(|t| has_three_vertices(t));
     let at = |v: u32| mesh.positions()[v as usize];
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -608,7 +617,7 @@ fn quantised(mesh: &TriMesh, precision: u32, side: f64) -> Vec<CellTriangle> {
     let longest = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
     let magnitude = low.iter().chain(&high).fold(longest, |m, x| m.max(x.abs()));
     assert!((side - longest).abs() <= 8.0 * f64::EPSILON * magnitude, "side {side} in place of {longest}");
-    let steps = f64::from((1_u32 << precision) - 1);
+    let steps = f64::from((1_u32 << quantization_bits) - 1);
     let cell = |v: u32| {
         std::array::from_fn(|a| {
             let offset = at(v)[a] - low[a];

@@ -1,7 +1,7 @@
 //! What all readers do with vertices and faces once they have them.
 
 use super::{MeshFile, ReadError, ReadReport};
-use crate::mesh::{Attributes, NO_ROW, TriMesh};
+use crate::mesh::{Attributes, NO_ENTRY, TriMesh};
 
 /// How many different names of ignored things a report lists: a damaged text has a new one on every line.
 const MAX_IGNORED_NAMES: usize = 64;
@@ -65,9 +65,9 @@ impl MeshBuilder {
         self.check_rows(num_indexed, self.positions.len().max(3 * self.triangles.len()))?;
         let mesh = TriMesh::new(self.positions, self.triangles)?;
         for attribute in &mut self.attributes.list {
-            let num_rows = attribute.num_rows();
+            let num_rows = attribute.num_entries();
             if let Some(indices) = &mut attribute.indices {
-                indices.resize(attribute.domain.num_elements(&mesh), NO_ROW);
+                indices.resize(attribute.domain.num_elements(&mesh), NO_ENTRY);
                 if indices.len() == num_rows && indices.iter().enumerate().all(|(k, &row)| k == row as usize)
                 {
                     attribute.indices = None;

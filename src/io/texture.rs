@@ -3,7 +3,7 @@
 //! glTF counts texture coordinates downwards from the top of the image, OBJ and PLY upwards from its bottom.
 //! Readers keep what the file says, under the name it has there; a writer of the other kind turns it.
 
-use crate::mesh::{Attribute, ScalarType, Semantic, Values};
+use crate::mesh::{Attribute, ComponentType, Semantic, Values};
 use std::borrow::Cow;
 
 /// `attribute` as a file has it that counts downwards (or not): texture coordinates from the other kind of
@@ -20,8 +20,8 @@ pub(super) fn oriented(attribute: &Attribute, is_downwards: bool) -> Cow<'_, Att
         if k % n == 1 { 1.0 - number } else { number }
     };
     let numbers = (0..attribute.values.len()).map(number);
-    let values = match attribute.values.scalar_type() {
-        Some(ScalarType::F64) => Values::F64(numbers.collect()),
+    let values = match attribute.values.component_type() {
+        Some(ComponentType::F64) => Values::F64(numbers.collect()),
         _ => Values::F32(numbers.map(|number| number as f32).collect()),
     };
     Cow::Owned(Attribute { values, is_normalized: false, ..attribute.clone() })

@@ -13,7 +13,7 @@ mod tri_mesh;
 pub(crate) mod triangle;
 
 pub use attribute::{
-    Attribute, AttributeError, Attributes, Domain, GltfMaterials, MAX_COMPONENTS, NO_ROW, ScalarType,
+    Attribute, AttributeError, Attributes, ComponentType, Domain, GltfMaterials, MAX_COMPONENTS, NO_ENTRY,
     Semantic, Values,
 };
 pub(crate) use corners_at::CornersAt;

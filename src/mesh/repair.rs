@@ -9,7 +9,7 @@ use super::tri_mesh::{TriMesh, has_three_vertices};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RepairReport {
     /// Triangles dropped because they name a vertex twice.
-    pub degenerate_faces: usize,
+    pub degenerate_triangles: usize,
     /// Vertices dropped because no triangle uses them.
     pub isolated_vertices: usize,
     /// Vertices repeated to cut the surface where more than two triangles meet at an edge, where
@@ -31,14 +31,14 @@ pub(crate) struct Repaired {
 pub(crate) fn repair(mesh: &TriMesh) -> Repaired {
     let triangles: Vec<[u32; 3]> =
         mesh.triangles().iter().filter(|t| has_three_vertices(t)).copied().collect();
-    let degenerate_faces = mesh.num_triangles() - triangles.len();
+    let degenerate_triangles = mesh.num_triangles() - triangles.len();
 
     let (surface, source) = cut(triangles, mesh.num_vertices());
     let mut used = vec![false; mesh.num_vertices()];
     source.iter().for_each(|&v| used[v as usize] = true);
     let used = used.iter().filter(|&&u| u).count();
     let report = RepairReport {
-        degenerate_faces,
+        degenerate_triangles,
         isolated_vertices: mesh.num_vertices() - used,
         repeated_vertices: source.len() - used,
     };
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn unusable_things_are_counted() {
         let r = report(6, &[[0, 1, 2], [1, 1, 2], [3, 3, 3]]);
-        assert_eq!((r.degenerate_faces, r.isolated_vertices, r.repeated_vertices), (2, 3, 0));
+        assert_eq!((r.degenerate_triangles, r.isolated_vertices, r.repeated_vertices), (2, 3, 0));
     }
 
     #[test]

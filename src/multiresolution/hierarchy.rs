@@ -117,14 +117,14 @@ impl Hierarchy {
             let may_be_it = mesh.num_vertices() >= num_vertices && mesh.num_vertices() <= 8 * num_vertices;
             if may_be_it {
                 coarse.pop_if(|last| last.num_vertices() == mesh.num_vertices());
-                coarse.push(mesh.to_cut_mesh());
+                coarse.push(mesh.to_manifold_mesh());
             }
         }
         if !decoder.is_complete() {
             return Err(EditError::Incomplete);
         }
         let mesh = decoder.mesh().ok_or(EditError::Incomplete)?;
-        let (fine, (joined, _)) = (mesh.to_cut_mesh(), mesh.joined_vertices());
+        let (fine, (joined, _)) = (mesh.to_manifold_mesh(), mesh.stitched_vertices());
         // Joined vertices are numbered as they come.
         let num_joined = |count: usize| joined[..count].iter().max().map_or(0, |&last| last as usize + 1);
         let is_it = |count: usize| num_joined(count) == num_vertices;

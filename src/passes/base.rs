@@ -45,11 +45,11 @@ pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
     num_vertices: usize,
     num_faces: usize,
-    precision: u32,
+    quantization_bits: u32,
     mixing: Mixing,
     target: Option<&BaseTarget>,
 ) -> Result<Base, Malformed> {
-    let mut grower = Grower::new(num_vertices, num_faces, precision, mixing, target);
+    let mut grower = Grower::new(num_vertices, num_faces, quantization_bits, mixing, target);
     grower.code_some(coder, &mut WorkBudget::unlimited())?;
     let mut placement = grower.finish()?;
     placement.code_some(coder, &mut WorkBudget::unlimited())?;
@@ -114,7 +114,7 @@ pub(crate) struct Grower<'a> {
     target: Option<&'a BaseTarget<'a>>,
     num_vertices: usize,
     num_faces: usize,
-    precision: u32,
+    quantization_bits: u32,
     mixing: Mixing,
     triangles: Vec<[u32; 3]>,
     opposite: Vec<u32>,
@@ -137,7 +137,7 @@ impl<'a> Grower<'a> {
     pub(crate) fn new(
         num_vertices: usize,
         num_faces: usize,
-        precision: u32,
+        quantization_bits: u32,
         mixing: Mixing,
         target: Option<&'a BaseTarget<'a>>,
     ) -> Self {
@@ -147,7 +147,7 @@ impl<'a> Grower<'a> {
             target,
             num_vertices,
             num_faces,
-            precision,
+            quantization_bits,
             mixing,
             triangles: Vec::with_capacity(num_faces),
             opposite: Vec::with_capacity(3 * num_faces),
@@ -188,12 +188,20 @@ impl<'a> Grower<'a> {
         if self.around.len() != self.num_vertices {
             return Err(Malformed("the base mesh has fewer vertices than announced"));
         }
-        let Self { target, num_vertices, precision, mixing, triangles, vertex_source, corner_source, .. } =
-            self;
+        let Self {
+            target,
+            num_vertices,
+            quantization_bits,
+            mixing,
+            triangles,
+            vertex_source,
+            corner_source,
+            ..
+        } = self;
         let surface = Surface::from_triangles(triangles, num_vertices)
             .map_err(|_| Malformed("the base mesh is not a surface"))?;
         let base = Base { mesh: GridMesh { surface, ..GridMesh::default() }, vertex_source, corner_source };
-        Ok(Placement::new(base, precision, mixing, target.map(|t| t.positions)))
+        Ok(Placement::new(base, quantization_bits, mixing, target.map(|t| t.positions)))
     }
 
     /// Starts a component: the first target triangle that is not coded yet.

@@ -41,14 +41,14 @@ impl<'a> Placement<'a> {
     /// Begins with the triangles of `base`; `target` has the cells in the encoder's order.
     pub(super) fn new(
         mut base: Base,
-        precision: u32,
+        quantization_bits: u32,
         mixing: Mixing,
         target: Option<&'a [[i32; 3]]>,
     ) -> Self {
         let num_vertices = base.mesh.surface.corner_of.len();
         base.mesh.positions = vec![[0; 3]; num_vertices];
         base.mesh.roughness = vec![[UNKNOWN_ROUGHNESS; 2]; num_vertices];
-        let limit = 1_i64 << precision;
+        let limit = 1_i64 << quantization_bits;
         let length = limit as f32 / 8.0;
         let fringe = Fringe { misses: vec![Lanes::ZERO; num_vertices], edge: length };
         Self {

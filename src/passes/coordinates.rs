@@ -69,10 +69,10 @@ pub(crate) fn code<B: BitCoder>(
     models: &mut CoordinateModels,
     mesh: &mut GridMesh,
     patches: &Patches,
-    precision: u32,
+    quantization_bits: u32,
     target: Option<&[[i32; 3]]>,
 ) -> Result<(), Malformed> {
-    code_some(coder, models, mesh, patches, precision, target, &mut WorkBudget::unlimited()).map(drop)
+    code_some(coder, models, mesh, patches, quantization_bits, target, &mut WorkBudget::unlimited()).map(drop)
 }
 
 /// Goes on from the first vertex that has no position; true if all have one, or a cut payload has told what
@@ -82,12 +82,12 @@ pub(crate) fn code_some<B: BitCoder>(
     models: &mut CoordinateModels,
     mesh: &mut GridMesh,
     patches: &Patches,
-    precision: u32,
+    quantization_bits: u32,
     target: Option<&[[i32; 3]]>,
     work: &mut WorkBudget,
 ) -> Result<bool, Malformed> {
     let mut surroundings = CodingContext::default();
-    let limit = 1_i64 << precision;
+    let limit = 1_i64 << quantization_bits;
     let first_odd = mesh.surface.corner_of.len() - patches.len();
     for patch in mesh.positions.len() - first_odd..patches.len() {
         if !work.take(patches.edges(patch).len()) {

@@ -12,13 +12,13 @@ const FREE: u64 = 1 << 18;
 const PER_BYTE: u64 = 128;
 
 /// Units of a base mesh for each face: gates of the growth, edges at its vertices.
-const BASE_PER_FACE: u64 = 10;
+const BASE_PER_TRIANGLE: u64 = 10;
 /// Units of a refinement for each face: edges at its vertices.
-const REFINE_PER_FACE: u64 = 6;
+const REFINE_PER_TRIANGLE: u64 = 6;
 /// Units of a split for each face before: its gates in the walk.
-const WALK_PER_FACE: u64 = 5;
+const WALK_PER_TRIANGLE: u64 = 5;
 /// Units of a split for each face after: stars are made, and looked at.
-const STARS_PER_FACE: u64 = 2;
+const STARS_PER_TRIANGLE: u64 = 2;
 /// Units of a split for each vertex it brings: its place is predicted and decoded, which takes longer than a look.
 const PLACE_PER_VERTEX: u64 = 12;
 /// Units of glue for each vertex there is: all are sorted by their cells.
@@ -41,14 +41,14 @@ pub(crate) fn earned(bytes: u64) -> u64 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub(crate) vertices: u64,
-    pub(crate) faces: u64,
+    pub(crate) triangles: u64,
 }
 
 impl Counts {
     /// After a pass.
     pub(crate) fn after(self, pass: &Pass) -> Self {
-        let (vertices, faces) = (u64::from(pass.vertices), u64::from(pass.faces));
-        Self { vertices: self.vertices + vertices, faces: self.faces + faces }
+        let (vertices, triangles) = (u64::from(pass.vertices), u64::from(pass.triangles));
+        Self { vertices: self.vertices + vertices, triangles: self.triangles + triangles }
     }
 }
 
@@ -57,11 +57,11 @@ pub(crate) fn pass(row: &Pass, before: Counts, channels: u64) -> u64 {
     let after = before.after(row);
     let new = u64::from(row.vertices);
     match row.action {
-        Action::Base { .. } => (BASE_PER_FACE + channels * REFINE_PER_FACE) * after.faces,
-        Action::Refine => REFINE_PER_FACE * after.faces,
+        Action::Base { .. } => (BASE_PER_TRIANGLE + channels * REFINE_PER_TRIANGLE) * after.triangles,
+        Action::Refine => REFINE_PER_TRIANGLE * after.triangles,
         Action::Split => {
-            let stars = (STARS_PER_FACE + channels) * (after.faces + new);
-            WALK_PER_FACE * before.faces + stars + PLACE_PER_VERTEX * new
+            let stars = (STARS_PER_TRIANGLE + channels) * (after.triangles + new);
+            WALK_PER_TRIANGLE * before.triangles + stars + PLACE_PER_VERTEX * new
         }
     }
 }
@@ -83,10 +83,10 @@ pub(crate) fn values(elements: u64, components: u64) -> u64 {
 
 /// Units of the order of the file.
 pub(crate) fn order(finest: Counts) -> u64 {
-    ORDER_PER_ELEMENT * (finest.vertices + finest.faces)
+    ORDER_PER_ELEMENT * (finest.vertices + finest.triangles)
 }
 
-/// Units of so many loose vertices and faces.
+/// Units of so many loose vertices and triangles.
 pub(crate) fn loose(count: u64) -> u64 {
     LOOSE_EACH * count
 }
@@ -113,10 +113,11 @@ mod tests {
 
     #[test]
     fn a_split_costs_the_whole_mesh_and_what_it_brings() {
-        let grid = Counts { vertices: 40_401, faces: 80_000 };
-        let ear = Pass { action: Action::Split, vertices: 1, faces: 1, bytes: 12 };
+        let grid = Counts { vertices: 40_401, triangles: 80_000 };
+        let ear = Pass { action: Action::Split, vertices: 1, triangles: 1, bytes: 12 };
         assert_eq!(pass(&ear, grid, 0), 5 * 80_000 + 2 * 80_002 + 12);
-        let base = Pass { action: Action::Base { precision: 9 }, vertices: 4, faces: 4, bytes: 9 };
+        let base =
+            Pass { action: Action::Base { quantization_bits: 9 }, vertices: 4, triangles: 4, bytes: 9 };
         assert_eq!(pass(&base, Counts::default(), 2), (10 + 2 * 6) * 4);
     }
 

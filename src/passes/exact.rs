@@ -186,7 +186,7 @@ pub(crate) fn code<B: BitCoder>(
     let half = grid.half_step();
     let mut positions = Vec::with_capacity(cells.len());
     for (i, &cell) in cells.iter().enumerate() {
-        let middle = grid.position(cell, grid.precision);
+        let middle = grid.position(cell, grid.quantization_bits);
         let mut position = [0.0; 3];
         for (a, axis) in axes.iter_mut().enumerate() {
             let wanted = target.map(|t| t(i)[a]);

@@ -43,7 +43,7 @@ pub(crate) fn code_counts<B: BitCoder>(
 /// Codes what is loose in a mesh with `num_joined` vertices on its surface.
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
-    precision: u32,
+    quantization_bits: u32,
     num_joined: usize,
     [num_cells, num_faces]: [u64; 2],
     target: Option<&Loose>,
@@ -59,7 +59,7 @@ pub(crate) fn code<B: BitCoder>(
         for axis in 0..3 {
             let way = i64::from(wanted[axis]) - i64::from(last[axis]);
             let cell = i64::from(last[axis]) + ways.code_signed(coder, axis, way);
-            if !(0..1 << precision).contains(&cell) {
+            if !(0..1 << quantization_bits).contains(&cell) {
                 return Err(Malformed("a loose vertex off the grid"));
             }
             last[axis] = cell as i32;

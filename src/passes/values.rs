@@ -9,7 +9,7 @@ use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::entropy::context_mixer::PlainBits;
 use crate::entropy::range_coder::BitCoder;
-use crate::mesh::{MAX_COMPONENTS, NO_ROW, ScalarType, Values};
+use crate::mesh::{ComponentType, MAX_COMPONENTS, NO_ENTRY, Values};
 use crate::util::bytes::Reader;
 use std::collections::HashMap;
 
@@ -55,13 +55,13 @@ pub(crate) fn write_head(list: &[Declaration], scales: &[Option<Vec<Scale>>]) ->
 }
 
 /// The type of numbers that channels need not tell exactly.
-pub(crate) fn scalar_of_inexact(declaration: &Declaration) -> Option<ScalarType> {
+pub(crate) fn scalar_of_inexact(declaration: &Declaration) -> Option<ComponentType> {
     declaration.scalar.filter(|_| !matches!(declaration.coding, Coding::Table { .. }))
 }
 
 /// Whether numbers of a type have ladders of doubles.
-pub(crate) fn is_wide(scalar: ScalarType) -> bool {
-    scalar != ScalarType::F32
+pub(crate) fn is_wide(scalar: ComponentType) -> bool {
+    scalar != ComponentType::F32
 }
 
 /// The middle of the numbers that the channels of a row may stand for, and how far they reach to each side.
@@ -82,7 +82,7 @@ pub(crate) fn around(declaration: &Declaration, channels: &[i32], k: usize) -> [
 
 /// What a unit vector is multiplied by.
 fn length_of_directions(declaration: &Declaration) -> f64 {
-    declaration.scalar.filter(|s| s.is_integer()).map_or(1.0, ScalarType::one)
+    declaration.scalar.filter(|s| s.is_integer()).map_or(1.0, ComponentType::one)
 }
 
 /// What has values: elements of the surface, joined, then loose ones.
@@ -128,8 +128,8 @@ pub(crate) fn code<B: BitCoder>(
     if let Some(exact) = &mut exact {
         told.of.reserve_exact(elements.on_surface.len() + elements.num_loose);
         for (i, &[element, vertex]) in elements.on_surface.iter().enumerate() {
-            let row = elements.rows.of.get(element as usize).copied().unwrap_or(NO_ROW);
-            let known = (row != NO_ROW).then(|| (elements.rows.get(row), Some([row, vertex])));
+            let row = elements.rows.of.get(element as usize).copied().unwrap_or(NO_ENTRY);
+            let known = (row != NO_ENTRY).then(|| (elements.rows.get(row), Some([row, vertex])));
             let row = exact.code(coder, known, wanted(i), &mut told.values)?;
             told.of.push(row);
         }
@@ -142,7 +142,7 @@ pub(crate) fn code<B: BitCoder>(
                 let known = channels.map(|channels| (channels, None));
                 exact.code(coder, known, wanted(elements.on_surface.len() + i), &mut told.values)?
             }
-            (None, None) => NO_ROW,
+            (None, None) => NO_ENTRY,
             (None, Some(channels)) => {
                 declaration.restore(channels, &mut told.values);
                 last_row(&told.values, declaration.num_components)
@@ -199,7 +199,7 @@ impl<'a> LooseRows<'a> {
 /// Rows of exact numbers of one attribute.
 struct ExactRows<'a> {
     declaration: &'a Declaration,
-    scalar: ScalarType,
+    scalar: ComponentType,
     components: Vec<ExactCoder>,
     /// The exact row that a row of the surface had last: at each vertex, and anywhere.
     at_vertex: HashMap<[u32; 2], u32>,
@@ -223,7 +223,7 @@ type Known<'a> = Option<(&'a [i32], Option<[u32; 2]>)>;
 impl<'a> ExactRows<'a> {
     fn new(declaration: &'a Declaration, ladders: &[Ladder]) -> Self {
         // Ladders are of attributes with numbers.
-        let scalar = declaration.scalar.unwrap_or(ScalarType::F64);
+        let scalar = declaration.scalar.unwrap_or(ComponentType::F64);
         Self {
             declaration,
             scalar,
@@ -256,7 +256,7 @@ impl<'a> ExactRows<'a> {
             |k: usize| wanted.and_then(|(truth, row)| truth.bits(row? * n + k)).unwrap_or_default();
         let Some((channels, key)) = known else {
             if !self.is_given.code(coder, 0, wanted.is_some_and(|w| w.1.is_some())) {
-                return Ok(NO_ROW);
+                return Ok(NO_ENTRY);
             }
             (0..n).for_each(|k| values.push_bits(self.code_raw(coder, wanted_bits(k))));
             return Ok(last_row(values, n));

@@ -38,7 +38,7 @@ impl CornerPaint {
             _ => return None,
         };
         // Integers that nobody called normalised are colours of their range.
-        let one = match (attribute.semantic, attribute.values.scalar_type()) {
+        let one = match (attribute.semantic, attribute.values.component_type()) {
             (Semantic::Color(_), Some(scalar)) if !attribute.is_normalized => scalar.one(),
             _ => 1.0,
         };
@@ -95,7 +95,7 @@ impl Paint<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Domain, NO_ROW, Values};
+    use crate::mesh::{Domain, NO_ENTRY, Values};
 
     #[test]
     fn attributes_have_their_colours() {
@@ -120,8 +120,8 @@ mod tests {
         assert_eq!(at(&uv, 1), Some([2, 189, 96]), "beyond the unit square, and dark");
         assert!(paint(Semantic::Generic, 1, Values::U8(vec![0; 2])).is_none());
         let values = Values::U8(vec![9; 3]);
-        let attribute = Attribute::new("c", Semantic::Color(0), Domain::Face, 3, values);
-        let without = CornerPaint::new(&mesh, &Attribute { indices: Some(vec![NO_ROW]), ..attribute });
+        let attribute = Attribute::new("c", Semantic::Color(0), Domain::Triangle, 3, values);
+        let without = CornerPaint::new(&mesh, &Attribute { indices: Some(vec![NO_ENTRY]), ..attribute });
         assert_eq!(at(&without, 2), Some([255, 0, 255]));
     }
 }

@@ -30,12 +30,12 @@ pub enum Partition {
 
 impl Partition {
     /// Every partition, in the order of their names in help texts.
-    pub const ALL: [Partition; 2] = [Partition::Balanced, Partition::Algorithm1];
+    pub const ALL: [Partition; 2] = [Partition::WeightedError, Partition::Algorithm1];
 
     /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Partition::Balanced => "balanced",
+            Partition::WeightedError => "balanced",
             Partition::Algorithm1 => "algorithm1",
         }
     }

@@ -142,7 +142,7 @@ impl Seams {
                 match track.domain {
                     Domain::Vertex => false,
                     Domain::Corner => differ(prev(before), next(after)) || differ(before, after),
-                    Domain::Face => differ(before / 3, after / 3),
+                    Domain::Triangle => differ(before / 3, after / 3),
                 }
             })
         };
@@ -221,7 +221,7 @@ impl Seams {
                         }
                     }
                 }
-                Domain::Face => {
+                Domain::Triangle => {
                     let at = |c: u32| of[c as usize / 3];
                     record.push_rows(attribute, star.corners.iter().map(|&c| at(c)));
                     self.left.clear();
@@ -315,7 +315,7 @@ mod tests {
         let mut seams = Seams::default();
         let row = |face: u32| u32::from(face >= 3);
         seams.follow(Domain::Corner, (0..18).map(|c| row(c / 3)).collect());
-        seams.follow(Domain::Face, (0..6).map(row).collect());
+        seams.follow(Domain::Triangle, (0..6).map(row).collect());
         let diagonal = Diagonal::new([0, 3], 6);
         assert_eq!(seams.demand(&star), Demand::Diagonal(diagonal));
         let mut record = LevelRecord::default();
@@ -335,7 +335,7 @@ mod tests {
         let mut demand = |faces: [u32; 6], times: usize| {
             let mut seams = Seams::default();
             (0..times).for_each(|_| seams.loosen());
-            seams.follow(Domain::Face, faces.to_vec());
+            seams.follow(Domain::Triangle, faces.to_vec());
             surface.read_star(6, &mut star);
             seams.demand(&star)
         };

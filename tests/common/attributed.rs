@@ -1,7 +1,7 @@
 //! Meshes with attributes.
 
 use super::*;
-use lwc::mesh::{Attribute, Attributes, Domain, NO_ROW, ScalarType, Semantic, Values};
+use lwc::mesh::{Attribute, Attributes, ComponentType, Domain, NO_ENTRY, Semantic, Values};
 
 pub fn all(list: Vec<Attribute>) -> Attributes {
     let mut attributes = Attributes::default();
@@ -63,7 +63,7 @@ pub fn materials(mesh: &TriMesh) -> Attribute {
     let indices = mesh.triangles().iter().map(|t| index(centre(t))).collect();
     Attribute {
         indices: Some(indices),
-        ..Attribute::new("usemtl", Semantic::Material, Domain::Face, 1, Values::Names(names))
+        ..Attribute::new("usemtl", Semantic::Material, Domain::Triangle, 1, Values::Names(names))
     }
 }
 
@@ -104,17 +104,23 @@ pub fn torn(mesh: &TriMesh) -> Vec<Attribute> {
     let corners = 0..3 * mesh.num_triangles();
     let place = |c| if side(c) { [at(c)[0], at(c)[1]] } else { [at(c)[1] + 5.0, at(c)[2]] };
     let places = corners.clone().flat_map(|c| place(c).map(|x| x as f32)).collect();
-    let rows = corners.map(|c| if c % 41 < 5 { NO_ROW } else { c as u32 }).collect();
+    let rows = corners.map(|c| if c % 41 < 5 { NO_ENTRY } else { c as u32 }).collect();
     let uv = Attribute::new("torn", Semantic::TexCoord(0), Domain::Corner, 2, Values::F32(places));
     let heights = (0..mesh.num_triangles()).map(|t| (10.0 * at(3 * t)[2]) as i32).collect();
-    let heights = Attribute::new("heights", Semantic::Group, Domain::Face, 1, Values::I32(heights));
+    let heights = Attribute::new("heights", Semantic::Group, Domain::Triangle, 1, Values::I32(heights));
     let spread = (0..mesh.num_vertices()).map(|v| (v % 5) as u8 * 60).collect();
     let spread = Attribute::new("spread", Semantic::Generic, Domain::Vertex, 1, Values::U8(spread));
     vec![Attribute { indices: Some(rows), ..uv }, heights, spread]
 }
 
 /// Numbers of all types for the elements of a mesh: small, large, far apart, and those that are no numbers.
-pub fn nasty(mesh: &TriMesh, domain: Domain, scalar: ScalarType, semantic: Semantic, seed: u64) -> Attribute {
+pub fn nasty(
+    mesh: &TriMesh,
+    domain: Domain,
+    scalar: ComponentType,
+    semantic: Semantic,
+    seed: u64,
+) -> Attribute {
     let mut random = Random(seed);
     let num_components = if semantic == Semantic::Normal { 3 } else { 1 + seed as usize % 4 };
     let mut values = Values::new(scalar);
@@ -122,24 +128,26 @@ pub fn nasty(mesh: &TriMesh, domain: Domain, scalar: ScalarType, semantic: Seman
     let has_no_numbers = seed.is_multiple_of(2);
     for k in 0..count * num_components {
         let bits = match (scalar, random.next() % 8) {
-            (ScalarType::F32, 0) => u64::from((-0.0_f32).to_bits()),
-            (ScalarType::F32, 1) => u64::from(f32::from_bits(random.next() as u32 & 0x007f_ffff).to_bits()),
-            (ScalarType::F32, 2) if has_no_numbers => 0x7fc0_0001 + random.next() % 9,
-            (ScalarType::F32, 3) if has_no_numbers => u64::from(f32::NEG_INFINITY.to_bits()),
-            (ScalarType::F32, 4) => u64::from((0.001 * (k % 1000) as f32).to_bits()),
-            (ScalarType::F32, _) => u64::from((random.unit() as f32).to_bits()),
-            (ScalarType::F64, 0) => (-0.0_f64).to_bits(),
-            (ScalarType::F64, 1) => random.next() & 0x000f_ffff_ffff_ffff,
-            (ScalarType::F64, 2) if has_no_numbers => f64::NAN.to_bits() | (random.next() % 99),
-            (ScalarType::F64, 3) if has_no_numbers => f64::MAX.to_bits(),
-            (ScalarType::F64, _) => (random.unit() * 1e6).to_bits(),
-            (ScalarType::U32 | ScalarType::I32, _) => random.next() >> 32 >> (seed % 2 * 20),
+            (ComponentType::F32, 0) => u64::from((-0.0_f32).to_bits()),
+            (ComponentType::F32, 1) => {
+                u64::from(f32::from_bits(random.next() as u32 & 0x007f_ffff).to_bits())
+            }
+            (ComponentType::F32, 2) if has_no_numbers => 0x7fc0_0001 + random.next() % 9,
+            (ComponentType::F32, 3) if has_no_numbers => u64::from(f32::NEG_INFINITY.to_bits()),
+            (ComponentType::F32, 4) => u64::from((0.001 * (k % 1000) as f32).to_bits()),
+            (ComponentType::F32, _) => u64::from((random.unit() as f32).to_bits()),
+            (ComponentType::F64, 0) => (-0.0_f64).to_bits(),
+            (ComponentType::F64, 1) => random.next() & 0x000f_ffff_ffff_ffff,
+            (ComponentType::F64, 2) if has_no_numbers => f64::NAN.to_bits() | (random.next() % 99),
+            (ComponentType::F64, 3) if has_no_numbers => f64::MAX.to_bits(),
+            (ComponentType::F64, _) => (random.unit() * 1e6).to_bits(),
+            (ComponentType::U32 | ComponentType::I32, _) => random.next() >> 32 >> (seed % 2 * 20),
             (scalar, _) => random.next() & (u64::MAX >> (64 - 8 * scalar.num_bytes())),
         };
         values.push_bits(bits);
     }
     let indices = seed.is_multiple_of(3).then(|| {
-        let index = |k: u32| if random.next().is_multiple_of(5) { NO_ROW } else { k };
+        let index = |k: u32| if random.next().is_multiple_of(5) { NO_ENTRY } else { k };
         (0..count as u32).map(index).collect()
     });
     let name = format!("{scalar:?} of {domain}");

@@ -168,12 +168,12 @@ fn table(bits: &mut Bits, wanted: &[Row]) -> Vec<Row> {
         let row = wanted.get(pass).unwrap_or(&zeros);
         let head = &row.head;
         if pass == 0 {
-            let precision = bits.number(2, head[0].into()) as u32;
+            let quantization_bits = bits.number(2, head[0].into()) as u32;
             let vertices = bits.near(36, head[1]);
             let v = u64::from(vertices);
             let faces = bits.near((2 * v).min(u64::from(u32::MAX)).saturating_sub(4), head[2]);
             let size = bits.near(2 * v, row.size);
-            rows.push(Row { head: vec![precision, vertices, faces], size });
+            rows.push(Row { head: vec![quantization_bits, vertices, faces], size });
             there = v;
         } else if bits.bit(*head == [0]) {
             let size = bits.near(of(refine, there), row.size);
@@ -246,8 +246,8 @@ pub fn join_announced(chunks: &[Chunk]) -> Vec<u8> {
 }
 
 /// A header chunk of the narrow form: `precision` bits over the unit cube.
-pub fn header(precision: u8) -> Chunk {
-    let mut payload = vec![0, precision];
+pub fn header(quantization_bits: u8) -> Chunk {
+    let mut payload = vec![0, quantization_bits];
     [0.0_f32, 0.0, 0.0, 1.0].iter().for_each(|x| payload.extend(x.to_le_bytes()));
     Chunk { kind: b'H', payload }
 }

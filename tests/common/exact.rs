@@ -16,18 +16,18 @@ pub struct Quantised {
     /// Vertices that they use.
     pub used_vertices: usize,
     /// Triangles left out because they name a vertex twice.
-    pub degenerate_faces: usize,
+    pub degenerate_triangles: usize,
 }
 
 /// g = floor((x − min)·(2^q − 1)/s + ½), min per axis and s the largest side, both over the vertices
 /// that usable triangles use.
-pub fn quantise(mesh: &TriMesh, precision: u32) -> Quantised {
-    quantise_on(mesh, precision, None)
+pub fn quantise(mesh: &TriMesh, quantization_bits: u32) -> Quantised {
+    quantise_on(mesh, quantization_bits, None)
 }
 
 /// The same with the side of a stream, which may differ from the largest one by roundings of numbers as large
 /// as the coordinates.
-pub fn quantise_on(mesh: &TriMesh, precision: u32, side_of_stream: Option<f64>) -> Quantised {
+pub fn quantise_on(mesh: &TriMesh, quantization_bits: u32, side_of_stream: Option<f64>) -> Quantised {
     let usable: Vec<[u32; 3]> =
         mesh.triangles().iter().copied().filter(|&[a, b, c]| a != b && b != c && c != a).collect();
     let mut used: Vec<u32> = usable.iter().flatten().copied().collect();
@@ -55,7 +55,7 @@ pub fn quantise_on(mesh: &TriMesh, precision: u32, side_of_stream: Option<f64>) 
         }
         None => side,
     };
-    let steps = (2f64.powi(precision as i32)) - 1.0;
+    let steps = (2f64.powi(quantization_bits as i32)) - 1.0;
     let cell = |v: u32| -> [i64; 3] {
         std::array::from_fn(|axis| match side {
             0.0 => 0,
@@ -65,13 +65,13 @@ pub fn quantise_on(mesh: &TriMesh, precision: u32, side_of_stream: Option<f64>) 
     Quantised {
         triangles: canonical(usable.iter().map(|t| t.map(cell))),
         used_vertices: used.len(),
-        degenerate_faces: mesh.num_triangles() - usable.len(),
+        degenerate_triangles: mesh.num_triangles() - usable.len(),
     }
 }
 
 /// The triangles of a decoded mesh in the same form.
 pub fn cell_triangles(mesh: LevelMesh) -> Vec<CellTriangle> {
-    let cell = |v: u32| mesh.cells()[v as usize].map(i64::from);
+    let cell = |v: u32| mesh.quantized_positions()[v as usize].map(i64::from);
     canonical(mesh.triangles().iter().map(|t| t.map(cell)))
 }
 
@@ -91,22 +91,28 @@ pub fn assert_round_trip(mesh: &TriMesh, options: &EncodeOptions, what: &str) ->
         Ok(encoded) => encoded,
         Err(error) => panic!("{what}: {error}"),
     };
-    assert_exact(mesh, options.quantization, &encoded.bytes, &encoded.repair, what);
+    assert_exact(mesh, options.quantization_bits, &encoded.bytes, &encoded.repair, what);
     encoded
 }
 
 /// The finest mesh of the stream holds every usable triangle of `mesh`, and nothing else.
 #[track_caller]
-pub fn assert_exact(mesh: &TriMesh, precision: u32, stream: &[u8], report: &RepairReport, what: &str) {
+pub fn assert_exact(
+    mesh: &TriMesh,
+    quantization_bits: u32,
+    stream: &[u8],
+    report: &RepairReport,
+    what: &str,
+) {
     let mut decoder = Decoder::new(Limits::default());
     if let Err(error) = decoder.push(stream) {
         panic!("{what}: {error}");
     }
     assert!(decoder.is_complete(), "{what}: passes are missing");
     let decoded = decoder.mesh().expect("a complete stream has a mesh");
-    let wanted = quantise_on(mesh, precision, decoder.info().map(|info| info.side()));
-    assert_eq!(decoded.precision(), precision, "{what}");
-    assert_eq!(report.degenerate_faces, wanted.degenerate_faces, "{what}");
+    let wanted = quantise_on(mesh, quantization_bits, decoder.info().map(|info| info.side()));
+    assert_eq!(decoded.quantization_bits(), quantization_bits, "{what}");
+    assert_eq!(report.degenerate_triangles, wanted.degenerate_triangles, "{what}");
     assert_eq!(report.isolated_vertices, mesh.num_vertices() - wanted.used_vertices, "{what}");
     assert_eq!(decoded.num_vertices(), wanted.used_vertices + report.repeated_vertices, "{what}");
     assert_eq!(decoded.num_triangles(), wanted.triangles.len(), "{what}");
@@ -114,9 +120,9 @@ pub fn assert_exact(mesh: &TriMesh, precision: u32, stream: &[u8], report: &Repa
 
     // Positions in model units are those of the cells, in the view and in the one-shot result.
     let info = decoder.info().expect("a complete stream has a table");
-    let steps = 2f64.powi(precision as i32) - 1.0;
+    let steps = 2f64.powi(quantization_bits as i32) - 1.0;
     let magnitude = info.origin().iter().fold(info.side(), |m, o| m.max(o.abs()));
-    for (position, cell) in decoded.positions().into_iter().zip(decoded.cells()) {
+    for (position, cell) in decoded.positions().into_iter().zip(decoded.quantized_positions()) {
         for axis in 0..3 {
             let wanted = info.origin()[axis] + f64::from(cell[axis]) / steps * info.side();
             // A handful of roundings of numbers up to `magnitude`, or of the smallest numbers.

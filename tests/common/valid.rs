@@ -9,9 +9,9 @@ use std::collections::HashMap;
 /// every cell on the grid of its precision.
 #[track_caller]
 pub fn assert_valid(mesh: LevelMesh, what: &str) {
-    let limit = 1_i64 << mesh.precision();
+    let limit = 1_i64 << mesh.quantization_bits();
     let on_grid = |c: &i32| (0..limit).contains(&i64::from(*c));
-    assert!(mesh.cells().iter().flatten().all(on_grid), "{what}: a cell off the grid");
+    assert!(mesh.quantized_positions().iter().flatten().all(on_grid), "{what}: a cell off the grid");
 
     // The vertex that follows `to` around `from`: triangle (from, to, next).
     let mut around = HashMap::new();

@@ -25,7 +25,7 @@ impl Model {
         let original = lwc::io::read(path)?.mesh;
         // Through the codec and back: what it repairs is repaired for all.
         let mut options = EncodeOptions::default();
-        options.quantization = bits;
+        options.quantization_bits = bits;
         options.optimize = Optimize::Size;
         let encoded = lwc::encode(&original, &options)?;
         let mesh = lwc::decode(&encoded.bytes, lwc::DecodeOptions::new())?;

@@ -82,7 +82,7 @@ pub fn fastest(runs: u32, mut work: impl FnMut() -> anyhow::Result<()>) -> anyho
 
 /// What the first `count` bytes show.
 fn early(bytes: &[u8], count: usize, compensate: bool) -> anyhow::Result<Option<lwc::TriMesh>> {
-    let mut decoder = Decoder::with_options(DecodeOptions::new().compensate(compensate));
+    let mut decoder = Decoder::with_options(DecodeOptions::new().shrinkage_compensation(compensate));
     decoder.feed(&bytes[..count.min(bytes.len())])?;
     while decoder.step()?.is_some() {}
     Ok(decoder.preview())

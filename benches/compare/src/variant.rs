@@ -34,7 +34,7 @@ impl Variant {
 
     pub fn options(self, bits: u32) -> EncodeOptions {
         let mut options = EncodeOptions::default();
-        options.quantization = bits;
+        options.quantization_bits = bits;
         options.profile = self.profile;
         options.descriptor = self.descriptor.unwrap_or_default();
         match self.aim {

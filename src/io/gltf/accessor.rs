@@ -3,7 +3,7 @@
 use super::json::{Accessor, BufferView, Document};
 use crate::{
     io::{Place, ReadError},
-    mesh::{ScalarType, Values},
+    mesh::{ComponentType, Values},
 };
 use std::borrow::Cow;
 
@@ -84,15 +84,15 @@ impl<'a> Store<'a> {
         let place = Place::Part("accessor", index);
         let bad = |what: String| ReadError::syntax(place, what);
         let accessor = self.accessor(index)?;
-        let scalar = scalar_type(accessor.component_type)
+        let scalar = component_type(accessor.component_type)
             .ok_or_else(|| bad(format!("component type {}", accessor.component_type)))?;
         let num_components = match &*accessor.shape {
             "SCALAR" => 1,
             "VEC2" => 2,
             "VEC3" => 3,
             "VEC4" => 4,
-            "MAT2" if scalar == ScalarType::F32 => 4,
-            "MAT3" if scalar == ScalarType::F32 => 9,
+            "MAT2" if scalar == ComponentType::F32 => 4,
+            "MAT3" if scalar == ComponentType::F32 => 9,
             "MAT4" => 16,
             // The columns of small matrices are padded; nobody uses them.
             "MAT2" | "MAT3" => {
@@ -119,7 +119,7 @@ impl<'a> Store<'a> {
         }
         if let Some(sparse) = &accessor.sparse {
             let num = usize::try_from(sparse.count).map_err(|_| too_large())?;
-            let kind = sparse.indices.component_type.and_then(scalar_type);
+            let kind = sparse.indices.component_type.and_then(component_type);
             let kind = kind
                 .filter(|kind| is_index(*kind))
                 .ok_or_else(|| bad("sparse indices of a wrong type".into()))?;
@@ -195,26 +195,26 @@ impl<'a> Store<'a> {
     }
 }
 
-pub(super) fn scalar_type(code: u32) -> Option<ScalarType> {
+pub(super) fn component_type(code: u32) -> Option<ComponentType> {
     Some(match code {
-        5120 => ScalarType::I8,
-        5121 => ScalarType::U8,
-        5122 => ScalarType::I16,
-        5123 => ScalarType::U16,
-        5125 => ScalarType::U32,
-        5126 => ScalarType::F32,
+        5120 => ComponentType::I8,
+        5121 => ComponentType::U8,
+        5122 => ComponentType::I16,
+        5123 => ComponentType::U16,
+        5125 => ComponentType::U32,
+        5126 => ComponentType::F32,
         _ => return None,
     })
 }
 
-pub(super) fn is_index(scalar: ScalarType) -> bool {
-    matches!(scalar, ScalarType::U8 | ScalarType::U16 | ScalarType::U32)
+pub(super) fn is_index(scalar: ComponentType) -> bool {
+    matches!(scalar, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
 }
 
 fn little_endian(raw: &[u8]) -> u64 {
     raw.iter().rev().fold(0, |bits, &byte| bits << 8 | u64::from(byte))
 }
 
-fn push_numbers(values: &mut Values, scalar: ScalarType, raw: &[u8]) {
+fn push_numbers(values: &mut Values, scalar: ComponentType, raw: &[u8]) {
     raw.chunks_exact(scalar.num_bytes()).for_each(|number| values.push_bits(little_endian(number)));
 }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     io::{MeshFile, Place, ReadError, ReadReport, builder::MeshBuilder},
-    mesh::{Attribute, Domain, NO_ROW, ScalarType, Semantic, Values},
+    mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values},
 };
 use std::collections::{BTreeMap, HashMap};
 
@@ -24,7 +24,7 @@ struct Gathered<'a> {
     columns: Vec<Column>,
     /// First vertex of the primitives with these attributes: primitives share vertices.
     blocks: HashMap<&'a BTreeMap<String, usize>, u32>,
-    /// Of each triangle, or [`NO_ROW`].
+    /// Of each triangle, or [`NO_ENTRY`].
     materials: Vec<u32>,
     report: ReadReport,
 }
@@ -106,7 +106,7 @@ impl<'a> Gathered<'a> {
             Some(material) if material >= document.materials.len() => {
                 return Err(ReadError::syntax(place, format!("there is no material {material}")));
             }
-            material => material.map_or(NO_ROW, |material| material as u32),
+            material => material.map_or(NO_ENTRY, |material| material as u32),
         };
         let num_new = self.triangles.len() - before;
         self.materials.extend(std::iter::repeat_n(material, num_new));
@@ -123,11 +123,11 @@ impl<'a> Gathered<'a> {
         let first = self.positions.len();
         let place = Place::Part("accessor", position);
         let array = store.read(position)?;
-        let num_vertices = array.num_rows();
+        let num_vertices = array.num_entries();
         if array.num_components != 3 {
             return Err(ReadError::syntax(place, "positions that are not VEC3"));
         }
-        if first + num_vertices >= NO_ROW as usize {
+        if first + num_vertices >= NO_ENTRY as usize {
             return Err(ReadError::TooLarge { message: format!("{} vertices", first + num_vertices) });
         }
         let table = Attribute {
@@ -154,8 +154,8 @@ impl<'a> Gathered<'a> {
                 }
                 other => other?,
             };
-            if array.num_rows() != num_vertices {
-                let message = format!("{} elements for {num_vertices} positions", array.num_rows());
+            if array.num_entries() != num_vertices {
+                let message = format!("{} elements for {num_vertices} positions", array.num_entries());
                 return Err(ReadError::syntax(place, format!("{name}: {message}")));
             }
             let attribute = Attribute {
@@ -165,13 +165,13 @@ impl<'a> Gathered<'a> {
                     semantic(name, array.num_components),
                     Domain::Vertex,
                     array.num_components,
-                    Values::new(array.values.scalar_type().unwrap_or(ScalarType::F32)),
+                    Values::new(array.values.component_type().unwrap_or(ComponentType::F32)),
                 )
             };
             let column = self.column(attribute);
-            let first_row = column.attribute.num_rows() as u32;
+            let first_row = column.attribute.num_entries() as u32;
             store.claim(4 * (first + num_vertices - column.rows.len()) as u64)?;
-            column.rows.resize(first, NO_ROW);
+            column.rows.resize(first, NO_ENTRY);
             column.rows.extend((0..num_vertices as u32).map(|row| first_row + row));
             column.attribute.values.append(array.values);
         }
@@ -183,12 +183,12 @@ impl<'a> Gathered<'a> {
     fn column(&mut self, attribute: Attribute) -> &mut Column {
         let is_like = |column: &Column| {
             let known = &column.attribute;
-            (&known.name, known.num_components, known.is_normalized, known.values.scalar_type())
+            (&known.name, known.num_components, known.is_normalized, known.values.component_type())
                 == (
                     &attribute.name,
                     attribute.num_components,
                     attribute.is_normalized,
-                    attribute.values.scalar_type(),
+                    attribute.values.component_type(),
                 )
         };
         let known = self.columns.iter().position(is_like).unwrap_or_else(|| {
@@ -246,12 +246,12 @@ fn joined(
     triangles: &[[u32; 3]],
 ) -> Attribute {
     let Column { attribute, rows } = &mut column;
-    rows.resize(vertex_of.len(), NO_ROW);
+    rows.resize(vertex_of.len(), NO_ENTRY);
     let n = attribute.num_components;
     let values = &attribute.values;
     let bits = |source: &u32| {
         let row = rows[*source as usize];
-        let bits = |k| if row == NO_ROW { None } else { values.bits(row as usize * n + k) };
+        let bits = |k| if row == NO_ENTRY { None } else { values.bits(row as usize * n + k) };
         (0..n).map(bits).collect::<Vec<_>>()
     };
     // Of each vertex of the file, the first one at its place that has the same value.
@@ -265,13 +265,13 @@ fn joined(
             has_seam |= alike.len() < place.len();
         }
     }
-    let mut table = Values::new(values.scalar_type().unwrap_or(ScalarType::F32));
-    let mut row_of = vec![NO_ROW; vertex_of.len()];
+    let mut table = Values::new(values.component_type().unwrap_or(ComponentType::F32));
+    let mut row_of = vec![NO_ENTRY; vertex_of.len()];
     let mut num_rows = 0;
     for (source, &first) in first_like.iter().enumerate() {
         if first as usize != source {
             row_of[source] = row_of[first as usize];
-        } else if rows[source] != NO_ROW {
+        } else if rows[source] != NO_ENTRY {
             let row = rows[source] as usize;
             (row * n..(row + 1) * n).for_each(|k| table.push_bits(values.bits(k).unwrap_or(0)));
             row_of[source] = num_rows;
@@ -281,7 +281,7 @@ fn joined(
     let (domain, indices) = if has_seam {
         (Domain::Corner, triangles.as_flattened().iter().map(|&source| row_of[source as usize]).collect())
     } else {
-        let mut indices = vec![NO_ROW; num_vertices];
+        let mut indices = vec![NO_ENTRY; num_vertices];
         vertex_of.iter().zip(&row_of).for_each(|(&vertex, &row)| indices[vertex as usize] = row);
         (Domain::Vertex, indices)
     };
@@ -291,11 +291,11 @@ fn joined(
 /// The materials that triangles have, by name.
 fn materials(all_names: &[String], mut rows: Vec<u32>) -> Option<Attribute> {
     // Of all materials those that are used, in order of appearance.
-    let mut row_of = vec![NO_ROW; all_names.len()];
+    let mut row_of = vec![NO_ENTRY; all_names.len()];
     let mut names = Vec::new();
-    for row in rows.iter_mut().filter(|row| **row != NO_ROW) {
+    for row in rows.iter_mut().filter(|row| **row != NO_ENTRY) {
         let known = &mut row_of[*row as usize];
-        if *known == NO_ROW {
+        if *known == NO_ENTRY {
             *known = names.len() as u32;
             names.push(all_names[*row as usize].clone());
         }
@@ -304,7 +304,7 @@ fn materials(all_names: &[String], mut rows: Vec<u32>) -> Option<Attribute> {
     if names.is_empty() {
         return None;
     }
-    let attribute = Attribute::new("material", Semantic::Material, Domain::Face, 1, Values::Names(names));
+    let attribute = Attribute::new("material", Semantic::Material, Domain::Triangle, 1, Values::Names(names));
     Some(Attribute { indices: Some(rows), ..attribute })
 }
 
@@ -318,7 +318,7 @@ fn corners(primitive: &Primitive, num_vertices: usize, store: &mut Store) -> Res
     let Some(index) = primitive.indices else { return Ok((0..num_vertices as u32).collect()) };
     let place = Place::Part("accessor", index);
     let array = store.read(index)?;
-    let scalar = array.values.scalar_type().filter(|scalar| is_index(*scalar));
+    let scalar = array.values.component_type().filter(|scalar| is_index(*scalar));
     if scalar.is_none() || array.num_components != 1 {
         return Err(ReadError::syntax(place, "indices that are not unsigned integers"));
     }
@@ -330,7 +330,7 @@ fn corners(primitive: &Primitive, num_vertices: usize, store: &mut Store) -> Res
         let message = format!("index {} is vertex {corner}, but there are {num_vertices}", k + 1);
         Err(ReadError::syntax(place, message))
     };
-    (0..array.num_rows()).map(corner).collect()
+    (0..array.num_entries()).map(corner).collect()
 }
 
 fn semantic(name: &str, num_components: usize) -> Semantic {

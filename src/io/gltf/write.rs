@@ -3,7 +3,9 @@
 use super::instances::Nodes;
 use crate::{
     io::{Scene, WriteError, WriteReport, texture::oriented},
-    mesh::{Attribute, Attributes, Domain, GltfMaterials, NO_ROW, ScalarType, Semantic, TriMesh, Values},
+    mesh::{
+        Attribute, Attributes, ComponentType, Domain, GltfMaterials, NO_ENTRY, Semantic, TriMesh, Values,
+    },
 };
 use base64::Engine;
 use serde_json::{Map, Value, json};
@@ -98,7 +100,7 @@ fn columns(attributes: &Attributes) -> (Vec<Column<'_>>, WriteReport) {
             format!("{prefix}_{}", num_sets[k] - 1)
         };
         let gltf_name = match attribute.semantic {
-            _ if attribute.values.names().is_some() || attribute.domain == Domain::Face => None,
+            _ if attribute.values.names().is_some() || attribute.domain == Domain::Triangle => None,
             Semantic::Normal if n == 3 => Some("NORMAL".to_owned()),
             Semantic::TexCoord(_) if n == 2 => Some(next_set(0, "TEXCOORD")),
             Semantic::Color(_) if n == 3 || n == 4 => Some(next_set(1, "COLOR")),
@@ -115,13 +117,13 @@ fn columns(attributes: &Attributes) -> (Vec<Column<'_>>, WriteReport) {
             _ => representable(&oriented(attribute, true)),
         };
         match (gltf_name.filter(is_new), written) {
-            (Some(gltf_name), Some(values)) if attribute.num_rows() > 0 => columns.push(Column {
+            (Some(gltf_name), Some(values)) if attribute.num_entries() > 0 => columns.push(Column {
                 attribute,
                 name: &attribute.name,
                 gltf_name,
                 // A type that changed is a float.
                 is_normalized: attribute.is_normalized
-                    && values.scalar_type().is_some_and(ScalarType::is_integer),
+                    && values.component_type().is_some_and(ComponentType::is_integer),
                 values,
             }),
             _ => report.ignored.push(attribute.name.clone()),
@@ -133,7 +135,7 @@ fn columns(attributes: &Attributes) -> (Vec<Column<'_>>, WriteReport) {
 
 fn first_material(attributes: &Attributes) -> Option<&Attribute> {
     let is_material = |a: &&Attribute| {
-        a.semantic == Semantic::Material && a.domain == Domain::Face && a.values.names().is_some()
+        a.semantic == Semantic::Material && a.domain == Domain::Triangle && a.values.names().is_some()
     };
     attributes.list.iter().find(is_material)
 }
@@ -158,11 +160,11 @@ fn custom_name(name: &str) -> String {
 /// The table as it is if glTF has such values there, else as float32; `None` if that would lose something
 /// that is not only rounding, or is not finite.
 fn representable(attribute: &Attribute) -> Option<Values> {
-    let scalar = attribute.values.scalar_type()?;
+    let scalar = attribute.values.component_type()?;
     let is_free = !matches!(attribute.semantic, Semantic::TexCoord(_) | Semantic::Color(_));
     let is_kept = match scalar {
-        ScalarType::U8 | ScalarType::U16 => is_free || attribute.is_normalized,
-        ScalarType::I8 | ScalarType::I16 => is_free,
+        ComponentType::U8 | ComponentType::U16 => is_free || attribute.is_normalized,
+        ComponentType::I8 | ComponentType::I16 => is_free,
         _ => false,
     };
     if is_kept {
@@ -192,7 +194,7 @@ fn unit_directions(attribute: &Attribute, other: [f32; 3]) -> Values {
         let sign = (attribute.num_components > 3).then(|| if number(3) < 0.0 { -1.0 } else { 1.0 });
         unit.into_iter().chain(sign)
     };
-    Values::F32((0..attribute.num_rows()).flat_map(unit).collect())
+    Values::F32((0..attribute.num_entries()).flat_map(unit).collect())
 }
 
 /// Vertices as glTF has them: one for each combination of rows at a vertex.
@@ -221,11 +223,12 @@ impl Split {
             vertex
         };
         let has_corners = columns.iter().any(|column| column.attribute.domain == Domain::Corner);
-        let row = |row: Option<usize>| row.map_or(NO_ROW, |row| row as u32);
+        let row = |row: Option<usize>| row.map_or(NO_ENTRY, |row| row as u32);
         if !has_corners {
             split.sources = (0..mesh.num_vertices() as u32).collect();
-            let rows =
-                |v: &u32| columns.iter().map(move |c| row(c.attribute.row(*v as usize))).collect::<Vec<_>>();
+            let rows = |v: &u32| {
+                columns.iter().map(move |c| row(c.attribute.entry(*v as usize))).collect::<Vec<_>>()
+            };
             split.rows = split.sources.iter().flat_map(rows).collect();
             split.triangles = mesh.triangles().to_vec();
             return Ok(split);
@@ -235,7 +238,7 @@ impl Split {
             for (c, corner) in corners.iter_mut().enumerate() {
                 key.clear();
                 key.push(triangle[c]);
-                key.extend(columns.iter().map(|column| row(column.attribute.row_at_corner(mesh, t, c))));
+                key.extend(columns.iter().map(|column| row(column.attribute.entry_at_corner(mesh, t, c))));
                 *corner = place(&mut split, &key);
                 is_used[triangle[c] as usize] = true;
             }
@@ -245,12 +248,12 @@ impl Split {
             key.clear();
             key.push(vertex as u32);
             key.extend(columns.iter().map(|column| match column.attribute.domain {
-                Domain::Vertex => row(column.attribute.row(vertex)),
-                _ => NO_ROW,
+                Domain::Vertex => row(column.attribute.entry(vertex)),
+                _ => NO_ENTRY,
             }));
             place(&mut split, &key);
         }
-        if split.sources.len() >= NO_ROW as usize {
+        if split.sources.len() >= NO_ENTRY as usize {
             let message = format!("{} vertices after splitting", split.sources.len());
             return Err(WriteError::Unrepresentable { message });
         }
@@ -308,7 +311,7 @@ impl Writer {
         named.insert("POSITION".to_owned(), self.positions(&positions).into());
         for (k, column) in columns.iter().enumerate() {
             let rows: Vec<u32> = split.rows.iter().skip(k).step_by(columns.len()).copied().collect();
-            if rows.contains(&NO_ROW) {
+            if rows.contains(&NO_ENTRY) {
                 self.report.zeroed.push(column.name.to_owned());
             }
             named.insert(column.gltf_name.clone(), self.column(column, &rows).into());
@@ -419,7 +422,7 @@ impl Writer {
 
     /// Writes the rows of a column, for vertices without one zeros, or some direction.
     fn column(&mut self, column: &Column, rows: &[u32]) -> usize {
-        let scalar = column.values.scalar_type().unwrap_or(ScalarType::F32);
+        let scalar = column.values.component_type().unwrap_or(ComponentType::F32);
         let (n, size) = (column.attribute.num_components, scalar.num_bytes());
         let stride = (n * size).next_multiple_of(4);
         let missing: &[f32] = match () {
@@ -431,17 +434,17 @@ impl Writer {
         for &row in rows {
             for k in 0..n {
                 let other = missing.get(k).map_or(0, |x| u64::from(x.to_bits()));
-                let bits = if row == NO_ROW { None } else { column.values.bits(row as usize * n + k) };
+                let bits = if row == NO_ENTRY { None } else { column.values.bits(row as usize * n + k) };
                 self.buffer.extend(&bits.unwrap_or(other).to_le_bytes()[..size]);
             }
             self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
         }
         let view = self.end(start, Some(ARRAY_BUFFER), Some(stride));
         let code = match scalar {
-            ScalarType::I8 => 5120,
-            ScalarType::U8 => 5121,
-            ScalarType::I16 => 5122,
-            ScalarType::U16 => 5123,
+            ComponentType::I8 => 5120,
+            ComponentType::U8 => 5121,
+            ComponentType::I16 => 5122,
+            ComponentType::U16 => 5123,
             _ => 5126,
         };
         let shape = ["SCALAR", "VEC2", "VEC3", "VEC4"][n - 1];
@@ -461,7 +464,7 @@ impl Writer {
     /// share the vertices.
     fn primitives(&mut self, attributes: &Attributes, triangles: &[[u32; 3]], named: Value) -> Vec<Value> {
         let material = first_material(attributes);
-        let row = |t: usize| material.and_then(|material| material.row(t));
+        let row = |t: usize| material.and_then(|material| material.entry(t));
         let mut order: Vec<(Option<usize>, usize)> = (0..triangles.len()).map(|t| (row(t), t)).collect();
         order.sort_by_key(|&(row, _)| row);
         let mut primitives = Vec::new();

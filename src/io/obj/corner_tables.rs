@@ -3,7 +3,7 @@
 use super::{references::References, statements::Statement};
 use crate::{
     io::{Place, ReadError, ReadReport, builder::fan, text::parse_number},
-    mesh::{Attribute, Attributes, Domain, NO_ROW, Semantic, Values},
+    mesh::{Attribute, Attributes, Domain, NO_ENTRY, Semantic, Values},
 };
 use std::collections::HashMap;
 
@@ -14,12 +14,12 @@ struct Rows(Vec<u32>);
 impl Rows {
     /// Elements are set in order, each at most once.
     fn set(&mut self, element: usize, row: u32) {
-        self.0.resize(element, NO_ROW);
+        self.0.resize(element, NO_ENTRY);
         self.0.push(row);
     }
 
     fn get(&self, element: usize) -> u32 {
-        self.0.get(element).copied().unwrap_or(NO_ROW)
+        self.0.get(element).copied().unwrap_or(NO_ENTRY)
     }
 }
 
@@ -108,7 +108,7 @@ impl Names {
             return None;
         }
         let rows = faces.iter().map(|&face| self.rows.get(face as usize)).collect();
-        let attribute = Attribute::new(name, semantic, Domain::Face, 1, Values::Names(self.names));
+        let attribute = Attribute::new(name, semantic, Domain::Triangle, 1, Values::Names(self.names));
         Some(Attribute { indices: Some(rows), ..attribute })
     }
 }
@@ -188,12 +188,12 @@ impl Gathered {
 
     /// Checks at the end that the values which corners refer to exist.
     pub fn check_references(&self) -> Result<(), ReadError> {
-        if self.num_corners >= NO_ROW as usize {
+        if self.num_corners >= NO_ENTRY as usize {
             return Err(ReadError::TooLarge { message: format!("{} corners", self.num_corners) });
         }
         for (what, table) in [("texture coordinate", &self.texture), ("normal", &self.normals)] {
             let num_values = table.values.len();
-            if num_values >= NO_ROW as usize {
+            if num_values >= NO_ENTRY as usize {
                 return Err(ReadError::TooLarge { message: format!("{num_values} values of one kind") });
             }
             if let Some((line, index)) = table.references.first_beyond(num_values) {

@@ -1,6 +1,6 @@
 //! What corners refer to, which may come later in the file.
 
-use crate::mesh::NO_ROW;
+use crate::mesh::NO_ENTRY;
 
 /// References to values that had not come when they were read.
 #[derive(Default)]
@@ -13,7 +13,7 @@ impl References {
     /// The value from 0 that `word` means where `num_so_far` have come: an index from 1, or one that counts back.
     ///
     /// `None` if it is no whole number, `Some(None)` if there is no such value. A place beyond 32 bits is
-    /// [`NO_ROW`], which [`References::first_beyond`] finds.
+    /// [`NO_ENTRY`], which [`References::first_beyond`] finds.
     pub fn resolve(&mut self, word: &[u8], num_so_far: usize, line: usize) -> Option<Option<u32>> {
         let index: i64 = match word {
             // A corner without position, as `/1`.
@@ -25,7 +25,7 @@ impl References {
         if from_1 > num_so_far as u64 && self.ahead.last().is_none_or(|&(_, highest)| highest < from_1) {
             self.ahead.push((line, from_1));
         }
-        Some(Some(u32::try_from(from_1 - 1).unwrap_or(NO_ROW)))
+        Some(Some(u32::try_from(from_1 - 1).unwrap_or(NO_ENTRY)))
     }
 
     /// The line and the index of the first reference beyond the last of `num` values.
@@ -61,6 +61,6 @@ mod tests {
         assert_eq!([resolve("0"), resolve("-5"), resolve("")], [Some(None); 3]);
         assert_eq!([resolve("x"), resolve("1.0"), resolve("99999999999999999999")], [None; 3]);
         assert_eq!(resolve("-9223372036854775808"), Some(None));
-        assert_eq!(resolve("9223372036854775807"), Some(Some(NO_ROW)));
+        assert_eq!(resolve("9223372036854775807"), Some(Some(NO_ENTRY)));
     }
 }

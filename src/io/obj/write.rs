@@ -22,7 +22,7 @@ pub(in crate::io) fn write(
     for (vertex, position) in mesh.positions().iter().enumerate() {
         out.write_all(b"v")?;
         position.iter().try_for_each(|&c| write_number(out, c))?;
-        if let Some((colour, row)) = layout.colour.as_ref().and_then(|c| Some((c, c.row(vertex)?))) {
+        if let Some((colour, row)) = layout.colour.as_ref().and_then(|c| Some((c, c.entry(vertex)?))) {
             (0..3).try_for_each(|k| write_number(out, colour.number(row, k).unwrap_or(0.0)))?;
         }
         out.write_all(b"\n")?;
@@ -30,7 +30,7 @@ pub(in crate::io) fn write(
     let texture = layout.texture.as_deref();
     for (keyword, table) in [("vt", texture), ("vn", layout.normals)] {
         let Some(table) = table else { continue };
-        for row in 0..table.num_rows() {
+        for row in 0..table.num_entries() {
             out.write_all(keyword.as_bytes())?;
             for k in 0..table.num_components {
                 write_number(out, table.number(row, k).unwrap_or(0.0))?;
@@ -41,7 +41,7 @@ pub(in crate::io) fn write(
     let mut current = vec![None; layout.names.len()];
     for (t, triangle) in mesh.triangles().iter().enumerate() {
         for ((keyword, names), current) in layout.names.iter().zip(&mut current) {
-            let row = names.row(t);
+            let row = names.entry(t);
             if row != *current {
                 let name = row.and_then(|row| names.values.names()?.get(row));
                 write_name(out, keyword, name.map_or("", String::as_str))?;
@@ -51,7 +51,7 @@ pub(in crate::io) fn write(
         out.write_all(b"f")?;
         for (corner, &vertex) in triangle.iter().enumerate() {
             write!(out, " {}", u64::from(vertex) + 1)?;
-            let row = |table: Option<&Attribute>| table?.row_at_corner(mesh, t, corner).map(|row| row + 1);
+            let row = |table: Option<&Attribute>| table?.entry_at_corner(mesh, t, corner).map(|row| row + 1);
             match (row(texture), row(layout.normals)) {
                 (None, None) => {}
                 (Some(texture), None) => write!(out, "/{texture}")?,
@@ -90,7 +90,7 @@ impl<'a> Layout<'a> {
             match (attribute.semantic, keyword) {
                 (_, Some(keyword))
                     if attribute.values.names().is_some()
-                        && attribute.domain == Domain::Face
+                        && attribute.domain == Domain::Triangle
                         && is_new(keyword) =>
                 {
                     layout.names.push((keyword, attribute));

@@ -7,7 +7,7 @@ use crate::{
         source::Source,
         text::{parse_number, quoted},
     },
-    mesh::ScalarType,
+    mesh::ComponentType,
 };
 use std::ops::Range;
 
@@ -62,7 +62,7 @@ impl<'s, 'a> Body<'s, 'a> {
         Ok(())
     }
 
-    pub fn number(&mut self, scalar: ScalarType) -> Result<f64, Fault> {
+    pub fn number(&mut self, scalar: ComponentType) -> Result<f64, Fault> {
         if !self.is_text() {
             return Ok(scalar.value(self.raw(scalar)?));
         }
@@ -84,7 +84,7 @@ impl<'s, 'a> Body<'s, 'a> {
     }
 
     /// The next number as the bits of its type. In a text it must be a number that the type has.
-    pub fn bits(&mut self, scalar: ScalarType) -> Result<u64, Fault> {
+    pub fn bits(&mut self, scalar: ComponentType) -> Result<u64, Fault> {
         if !self.is_text() {
             return self.raw(scalar);
         }
@@ -95,12 +95,12 @@ impl<'s, 'a> Body<'s, 'a> {
         let integer = |fits: bool| if fits { Ok(number as i64 as u64) } else { Err(Fault::NotANumber) };
         match scalar {
             // NaN of either sign is written alike.
-            _ if number.is_nan() && scalar == ScalarType::F32 => Ok(u64::from(f32::NAN.to_bits())),
+            _ if number.is_nan() && scalar == ComponentType::F32 => Ok(u64::from(f32::NAN.to_bits())),
             _ if number.is_nan() => Ok(f64::NAN.to_bits()),
-            ScalarType::F32 => Ok(u64::from(as_float().ok_or(Fault::NotANumber)?.to_bits())),
-            ScalarType::F64 => Ok(number.to_bits()),
-            ScalarType::U8 | ScalarType::U16 | ScalarType::U32 => integer(range(0.0, scalar.one())),
-            ScalarType::I8 | ScalarType::I16 | ScalarType::I32 => {
+            ComponentType::F32 => Ok(u64::from(as_float().ok_or(Fault::NotANumber)?.to_bits())),
+            ComponentType::F64 => Ok(number.to_bits()),
+            ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => integer(range(0.0, scalar.one())),
+            ComponentType::I8 | ComponentType::I16 | ComponentType::I32 => {
                 let fits = range(-scalar.one() - 1.0, scalar.one());
                 integer(fits).map(|bits| bits & (u64::MAX >> (64 - 8 * scalar.num_bytes())))
             }
@@ -108,7 +108,7 @@ impl<'s, 'a> Body<'s, 'a> {
     }
 
     /// The bits of the next number of a binary file, whose end is the only fault.
-    fn raw(&mut self, scalar: ScalarType) -> Result<u64, Fault> {
+    fn raw(&mut self, scalar: ComponentType) -> Result<u64, Fault> {
         let raw = self.source.take(scalar.num_bytes()).ok_or(Fault::EndOfFile)?;
         let push = |bits: u64, &byte: &u8| bits << 8 | u64::from(byte);
         let is_big_endian = self.encoding == Encoding::BigEndian;
@@ -116,7 +116,7 @@ impl<'s, 'a> Body<'s, 'a> {
     }
 
     /// The number of values in the list that comes next.
-    pub fn list_length(&mut self, count: ScalarType) -> Result<u64, Fault> {
+    pub fn list_length(&mut self, count: ComponentType) -> Result<u64, Fault> {
         let length = self.number(count)?;
         if length >= 0.0 { Ok(length as u64) } else { Err(Fault::NotANumber) }
     }

@@ -1,7 +1,7 @@
 //! Which properties of an element make an attribute, and under which names one is written.
 
 use super::header::{Element, Property};
-use crate::mesh::{Attribute, Domain, ScalarType, Semantic, Values};
+use crate::mesh::{Attribute, ComponentType, Domain, Semantic, Values};
 
 /// Names of properties that belong together if they follow each other and have one type.
 const GROUPS: [(&[&str], Kind); 9] = [
@@ -105,15 +105,15 @@ pub(super) fn property_names(attribute: &Attribute) -> Vec<String> {
 }
 
 /// What PLY calls a type.
-pub(super) fn scalar_name(scalar: ScalarType) -> &'static str {
+pub(super) fn scalar_name(scalar: ComponentType) -> &'static str {
     match scalar {
-        ScalarType::I8 => "char",
-        ScalarType::U8 => "uchar",
-        ScalarType::I16 => "short",
-        ScalarType::U16 => "ushort",
-        ScalarType::I32 => "int",
-        ScalarType::U32 => "uint",
-        ScalarType::F32 => "float",
-        ScalarType::F64 => "double",
+        ComponentType::I8 => "char",
+        ComponentType::U8 => "uchar",
+        ComponentType::I16 => "short",
+        ComponentType::U16 => "ushort",
+        ComponentType::I32 => "int",
+        ComponentType::U32 => "uint",
+        ComponentType::F32 => "float",
+        ComponentType::F64 => "double",
     }
 }

@@ -7,7 +7,7 @@ use crate::{
         source::{Line, Source},
         text::{quoted, words},
     },
-    mesh::ScalarType,
+    mesh::ComponentType,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,8 +20,8 @@ pub(super) enum Encoding {
 pub(super) struct Property {
     pub name: String,
     /// The type of the count before a list; `None` if this is a single value.
-    pub list_count: Option<ScalarType>,
-    pub scalar: ScalarType,
+    pub list_count: Option<ComponentType>,
+    pub scalar: ComponentType,
 }
 
 pub(super) struct Element {
@@ -119,16 +119,16 @@ fn parse_property(declaration: &[&[u8]]) -> Option<Property> {
     Some(Property { name, list_count, scalar: scalar_from_name(scalar)? })
 }
 
-fn scalar_from_name(name: &[u8]) -> Option<ScalarType> {
+fn scalar_from_name(name: &[u8]) -> Option<ComponentType> {
     Some(match name {
-        b"char" | b"int8" => ScalarType::I8,
-        b"uchar" | b"uint8" => ScalarType::U8,
-        b"short" | b"int16" => ScalarType::I16,
-        b"ushort" | b"uint16" => ScalarType::U16,
-        b"int" | b"int32" => ScalarType::I32,
-        b"uint" | b"uint32" => ScalarType::U32,
-        b"float" | b"float32" => ScalarType::F32,
-        b"double" | b"float64" => ScalarType::F64,
+        b"char" | b"int8" => ComponentType::I8,
+        b"uchar" | b"uint8" => ComponentType::U8,
+        b"short" | b"int16" => ComponentType::I16,
+        b"ushort" | b"uint16" => ComponentType::U16,
+        b"int" | b"int32" => ComponentType::I32,
+        b"uint" | b"uint32" => ComponentType::U32,
+        b"float" | b"float32" => ComponentType::F32,
+        b"double" | b"float64" => ComponentType::F64,
         _ => return None,
     })
 }

@@ -16,7 +16,7 @@ mod write;
 pub(super) use write::write;
 
 use super::{MeshFile, ReadError, builder::MeshBuilder, builder::fan, source::Source};
-use crate::mesh::{Attribute, Domain, NO_ROW, Semantic, Values};
+use crate::mesh::{Attribute, Domain, NO_ENTRY, Semantic, Values};
 use body::{Body, Fault};
 use columns::attributes_of;
 use header::{Element, Property, read_header};
@@ -138,7 +138,7 @@ fn read_faces(
     let corners_at = corners_property(element)?;
     let is_wedge = |p: &Property| p.name == "texcoord" && p.list_count.is_some() && !p.scalar.is_integer();
     let wedge_at = element.properties.iter().position(is_wedge).filter(|&k| k != corners_at);
-    let (attributes, owners) = attributes_of(element, Domain::Face, |_| true);
+    let (attributes, owners) = attributes_of(element, Domain::Triangle, |_| true);
     ignore_others(element, builder, |k| k == corners_at || wedge_at == Some(k) || owners[k].is_some());
 
     // Triangles that came before have no row.
@@ -150,8 +150,8 @@ fn read_faces(
             let values = Values::new(element.properties[k].scalar);
             Attribute::new("texcoord", Semantic::TexCoord(0), Domain::Corner, 2, values)
         }),
-        rows: vec![NO_ROW; builder.triangles.len()],
-        wedge_rows: vec![NO_ROW; 3 * builder.triangles.len()],
+        rows: vec![NO_ENTRY; builder.triangles.len()],
+        wedge_rows: vec![NO_ENTRY; 3 * builder.triangles.len()],
         num_rows: 0,
     };
     let mut numbers = Vec::new();
@@ -232,8 +232,8 @@ impl Faces {
         self.num_rows += 1;
         if let Some(wedge) = &mut self.wedge {
             if wedge_bits.len() == 2 * num_corners {
-                let first = u32::try_from(wedge.num_rows()).map_err(too_many)?;
-                u32::try_from(wedge.num_rows() + num_corners).map_err(too_many)?;
+                let first = u32::try_from(wedge.num_entries()).map_err(too_many)?;
+                u32::try_from(wedge.num_entries() + num_corners).map_err(too_many)?;
                 wedge_bits.iter().for_each(|&bits| wedge.values.push_bits(bits));
                 let row = |corner: usize| first + corner as u32;
                 self.wedge_rows.extend(fan(num_corners).flatten().map(row));
@@ -241,7 +241,7 @@ impl Faces {
                 if !wedge_bits.is_empty() {
                     builder.report.ignore("face.texcoord of another length");
                 }
-                self.wedge_rows.resize(3 * builder.triangles.len(), NO_ROW);
+                self.wedge_rows.resize(3 * builder.triangles.len(), NO_ENTRY);
             }
         }
         Ok(())

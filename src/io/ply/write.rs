@@ -3,7 +3,7 @@
 use super::columns::{property_names, scalar_name};
 use crate::{
     io::{WriteReport, texture::oriented},
-    mesh::{Attribute, Attributes, Domain, ScalarType, Semantic, TriMesh, Values},
+    mesh::{Attribute, Attributes, ComponentType, Domain, Semantic, TriMesh, Values},
 };
 use std::{
     borrow::Cow,
@@ -44,16 +44,16 @@ pub(in crate::io) fn write(
         layout
             .of_vertices
             .iter()
-            .try_for_each(|attribute| write_row(out, attribute, attribute.row(vertex)))?;
+            .try_for_each(|attribute| write_row(out, attribute, attribute.entry(vertex)))?;
     }
     for (t, triangle) in mesh.triangles().iter().enumerate() {
         let mut face = [3; 13];
         face[1..].copy_from_slice(triangle.map(u32::to_le_bytes).as_flattened());
         out.write_all(&face)?;
         if let Some(wedge) = &layout.wedge {
-            write_wedge(out, wedge, [0, 1, 2].map(|corner| wedge.row(3 * t + corner)))?;
+            write_wedge(out, wedge, [0, 1, 2].map(|corner| wedge.entry(3 * t + corner)))?;
         }
-        layout.of_faces.iter().try_for_each(|attribute| write_row(out, attribute, attribute.row(t)))?;
+        layout.of_faces.iter().try_for_each(|attribute| write_row(out, attribute, attribute.entry(t)))?;
     }
     Ok(report)
 }
@@ -80,7 +80,7 @@ impl<'a> Layout<'a> {
             match attribute.domain {
                 _ if attribute.values.names().is_some() => report.ignored.push(attribute.name.clone()),
                 Domain::Vertex => layout.of_vertices.push(written_as(Cow::Borrowed(attribute))),
-                Domain::Face => layout.of_faces.push(written_as(Cow::Borrowed(attribute))),
+                Domain::Triangle => layout.of_faces.push(written_as(Cow::Borrowed(attribute))),
                 Domain::Corner => match attribute.without_seams(mesh).filter(|_| !came_as_wedge) {
                     Some(smooth) => layout.of_vertices.push(written_as(Cow::Owned(smooth))),
                     None if may_be_wedge => layout.wedge = Some(written_as(Cow::Borrowed(attribute))),
@@ -90,7 +90,7 @@ impl<'a> Layout<'a> {
         }
         report.ignored.extend(attributes.material_libraries.first().map(|_| "mtllib".to_owned()));
         let columns = layout.of_vertices.iter().chain(&layout.of_faces);
-        let has_gaps = |a: &&Cow<Attribute>| (0..a.domain.num_elements(mesh)).any(|e| a.row(e).is_none());
+        let has_gaps = |a: &&Cow<Attribute>| (0..a.domain.num_elements(mesh)).any(|e| a.entry(e).is_none());
         report.zeroed = columns.filter(has_gaps).map(|a| a.name.clone()).collect();
         (layout, report)
     }
@@ -112,8 +112,8 @@ fn written_as(attribute: Cow<'_, Attribute>) -> Cow<'_, Attribute> {
     Cow::Owned(Attribute { values, is_normalized: false, ..attribute.into_owned() })
 }
 
-fn number_type(attribute: &Attribute) -> ScalarType {
-    attribute.values.scalar_type().unwrap_or(ScalarType::F32)
+fn number_type(attribute: &Attribute) -> ComponentType {
+    attribute.values.component_type().unwrap_or(ComponentType::F32)
 }
 
 fn declare(out: &mut impl Write, attributes: &[Cow<Attribute>]) -> io::Result<()> {

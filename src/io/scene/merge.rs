@@ -3,7 +3,7 @@
 use super::Scene;
 use crate::{
     io::{MeshFile, ReadError, builder::MeshBuilder},
-    mesh::{Attribute, Domain, IDENTITY, Instance, NO_ROW, Semantic, Values},
+    mesh::{Attribute, Domain, IDENTITY, Instance, NO_ENTRY, Semantic, Values},
 };
 use std::collections::HashMap;
 
@@ -105,10 +105,10 @@ struct Column {
 impl Column {
     /// Adds a table; gives the row in this one that each of its rows is now.
     fn append(&mut self, other: &Attribute) -> Vec<u32> {
-        let first = self.attribute.num_rows() as u32;
+        let first = self.attribute.num_entries() as u32;
         let Values::Names(known) = &mut self.attribute.values else {
             self.attribute.values.append(other.values.clone());
-            return (0..other.num_rows() as u32).map(|row| first + row).collect();
+            return (0..other.num_entries() as u32).map(|row| first + row).collect();
         };
         let mut row = |name: &String| {
             *self.row_of.entry(name.clone()).or_insert_with(|| {
@@ -137,10 +137,10 @@ impl Merger {
         builder.report.faces_skipped += report.faces_skipped;
         builder.report.corners_welded += report.corners_welded;
         let is_mirrored = matches!(motion, Motion::Affine(transform) if determinant(&transform) < 0.0);
-        let first_vertex = u32::try_from(builder.positions.len()).unwrap_or(NO_ROW);
+        let first_vertex = u32::try_from(builder.positions.len()).unwrap_or(NO_ENTRY);
         let num_before = builder.triangles.len();
         builder.positions.extend(mesh.positions().iter().map(|&p| motion.moved(p)));
-        if builder.positions.len() >= NO_ROW as usize {
+        if builder.positions.len() >= NO_ENTRY as usize {
             return Err(ReadError::TooLarge { message: format!("{} vertices", builder.positions.len()) });
         }
         if builder.positions[first_vertex as usize..].iter().flatten().any(|c| !c.is_finite()) {
@@ -176,7 +176,7 @@ impl Merger {
         num_before: usize,
         corners: [usize; 3],
     ) -> Result<(), ReadError> {
-        let domain = if attribute.domain == Domain::Face { Domain::Face } else { Domain::Corner };
+        let domain = if attribute.domain == Domain::Triangle { Domain::Triangle } else { Domain::Corner };
         let is_like = |column: &Column| {
             let known = &column.attribute;
             known.name == attribute.name
@@ -184,7 +184,7 @@ impl Merger {
                 && known.domain == domain
                 && known.num_components == attribute.num_components
                 && known.is_normalized == attribute.is_normalized
-                && known.values.scalar_type() == attribute.values.scalar_type()
+                && known.values.component_type() == attribute.values.component_type()
         };
         let known = self.columns.iter().position(is_like).unwrap_or_else(|| {
             let empty = attribute.values.emptied();
@@ -194,18 +194,18 @@ impl Merger {
         });
         self.builder.check_rows(self.columns.len(), 3 * self.builder.triangles.len())?;
         let column = &mut self.columns[known];
-        let num_rows = column.attribute.num_rows() + attribute.num_rows();
-        if num_rows >= NO_ROW as usize {
+        let num_rows = column.attribute.num_entries() + attribute.num_entries();
+        if num_rows >= NO_ENTRY as usize {
             return Err(ReadError::TooLarge { message: format!("{num_rows} values") });
         }
         let row_of = column.append(attribute);
         let rows = &mut column.rows;
-        let per_triangle = if domain == Domain::Face { 1 } else { 3 };
-        rows.resize(per_triangle * num_before, NO_ROW);
+        let per_triangle = if domain == Domain::Triangle { 1 } else { 3 };
+        rows.resize(per_triangle * num_before, NO_ENTRY);
         for t in 0..file.mesh.num_triangles() {
             rows.extend(corners[..per_triangle].iter().map(|&corner| {
-                let row = attribute.row_at_corner(&file.mesh, t, corner);
-                row.map_or(NO_ROW, |row| row_of[row])
+                let row = attribute.entry_at_corner(&file.mesh, t, corner);
+                row.map_or(NO_ENTRY, |row| row_of[row])
             }));
         }
         Ok(())
@@ -219,7 +219,7 @@ impl Merger {
         num_triangles: impl Iterator<Item = usize>,
     ) {
         let rows = num_triangles.zip(0..).flat_map(|(count, row)| std::iter::repeat_n(row, count)).collect();
-        let attribute = Attribute::new(name, Semantic::Object, Domain::Face, 1, table);
+        let attribute = Attribute::new(name, Semantic::Object, Domain::Triangle, 1, table);
         self.columns.push(Column { attribute, rows, row_of: HashMap::new() });
     }
 
@@ -252,7 +252,7 @@ fn turned_normals(attribute: &Attribute, transform: &[[f64; 4]; 3]) -> Attribute
     let sign = determinant(transform).signum();
     let rows = [cross(y, z), cross(z, x), cross(x, y)].map(|row| row.map(|entry| sign * entry));
     let mut values = Vec::with_capacity(attribute.values.len());
-    for row in 0..attribute.num_rows() {
+    for row in 0..attribute.num_entries() {
         let normal = [0, 1, 2].map(|k| attribute.number(row, k).unwrap_or(0.0));
         let turned = rows.map(|[a, b, c]| a * normal[0] + b * normal[1] + c * normal[2]);
         let length = turned.iter().map(|c| c * c).sum::<f64>().sqrt();

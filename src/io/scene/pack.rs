@@ -3,7 +3,7 @@
 use super::{Scene, merge::Merger, merge::Motion};
 use crate::{
     io::{MeshFile, ReadError, ReadReport},
-    mesh::{Attribute, Attributes, Domain, NO_ROW, SceneTable, TriMesh, Values},
+    mesh::{Attribute, Attributes, Domain, NO_ENTRY, SceneTable, TriMesh, Values},
 };
 use std::collections::HashMap;
 
@@ -55,7 +55,7 @@ impl Scene {
         let which = attributes.list.iter().position(is_scene_mesh);
         let number = |t: usize| {
             let attribute = &attributes.list[which?];
-            attribute.number(attribute.row(t)?, 0)
+            attribute.number(attribute.entry(t)?, 0)
         };
         let mut parts = vec![Part::default(); table.exponents.len()];
         for t in 0..mesh.num_triangles() {
@@ -111,7 +111,7 @@ impl NameBytes {
 }
 
 fn is_scene_mesh(attribute: &Attribute) -> bool {
-    attribute.name == SCENE_MESH && attribute.domain == Domain::Face && attribute.values.names().is_none()
+    attribute.name == SCENE_MESH && attribute.domain == Domain::Triangle && attribute.values.names().is_none()
 }
 
 fn power_of_two(exponent: i8) -> f64 {
@@ -149,7 +149,7 @@ impl Part {
             let part = match attribute.domain {
                 Domain::Vertex => selected(attribute, vertices.iter().map(|&v| v as usize)),
                 Domain::Corner => selected(attribute, self.triangles.iter().flat_map(corners)),
-                Domain::Face => selected(attribute, self.triangles.iter().copied()),
+                Domain::Triangle => selected(attribute, self.triangles.iter().copied()),
             };
             part.iter().try_for_each(|part| names.take(part))?;
             file.attributes.list.extend(part);
@@ -179,7 +179,8 @@ fn selected(attribute: &Attribute, elements: impl Iterator<Item = usize>) -> Opt
             next
         })
     };
-    let rows: Vec<u32> = elements.map(|element| attribute.row(element).map_or(NO_ROW, &mut copy)).collect();
+    let rows: Vec<u32> =
+        elements.map(|element| attribute.entry(element).map_or(NO_ENTRY, &mut copy)).collect();
     let is_plain = rows.iter().zip(0..).all(|(&row, k)| row == k) && rows.len() == row_of.len();
     let indices = if is_plain { None } else { Some(rows) };
     (!row_of.is_empty()).then(|| Attribute { values, indices, ..attribute.clone() })
@@ -200,7 +201,7 @@ mod tests {
         first.attributes.list = vec![vertex("heat", Values::F32(vec![0.5, -0.0, f32::NAN]))];
         let mut second = MeshFile { mesh: triangle(5.0), ..MeshFile::default() };
         let wood = Values::Names(vec!["wood".into()]);
-        second.attributes.list = vec![Attribute::new("m", Semantic::Material, Domain::Face, 1, wood)];
+        second.attributes.list = vec![Attribute::new("m", Semantic::Material, Domain::Triangle, 1, wood)];
         let mut scene = Scene { meshes: vec![first, second], ..Scene::default() };
         let scaled = IDENTITY.map(|row| row.map(|e| 9.0 * e));
         scene.instances = vec![
@@ -234,7 +235,7 @@ mod tests {
         let mesh = TriMesh::new(positions, triangles).unwrap();
         let on_faces = |name: &str, values, indices| Attribute {
             indices: Some(indices),
-            ..Attribute::new(name, Semantic::Material, Domain::Face, 1, values)
+            ..Attribute::new(name, Semantic::Material, Domain::Triangle, 1, values)
         };
         let with_name = |length: usize| Attributes {
             list: vec![

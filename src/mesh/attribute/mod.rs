@@ -1,17 +1,17 @@
 //! What a mesh carries besides positions and triangles.
 //!
-//! An [`Attribute`] is a table of values and, unless every element has its own row, an array that says which
-//! row an element has. A seam is two corners at one vertex with different rows: it does not split the vertex.
+//! An [`Attribute`] is a table of values and, unless every element has its own entry, an array that says which
+//! entry an element has. A seam is two corners at one vertex with different entries: it does not split the vertex.
 //!
 //! ```
 //! use lwc::TriMesh;
-//! use lwc::mesh::{Attribute, Domain, NO_ROW, Semantic, Values};
+//! use lwc::mesh::{Attribute, Domain, NO_ENTRY, Semantic, Values};
 //!
 //! let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 //! let mesh = TriMesh::new(square.to_vec(), vec![[0, 1, 2], [0, 2, 3]])?;
 //! // Five texture coordinates for four vertices, none at the last corner.
 //! let uv = Attribute {
-//!     indices: Some(vec![0, 1, 2, 3, 4, NO_ROW]),
+//!     indices: Some(vec![0, 1, 2, 3, 4, NO_ENTRY]),
 //!     ..Attribute::new(
 //!         "vt",
 //!         Semantic::TexCoord(0),
@@ -21,13 +21,13 @@
 //!     )
 //! };
 //! uv.validate(&mesh)?;
-//! assert_eq!((uv.row(3), uv.row(5)), (Some(3), None));
+//! assert_eq!((uv.entry(3), uv.entry(5)), (Some(3), None));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod values;
 
-pub use values::{ScalarType, Values};
+pub use values::{ComponentType, Values};
 
 use super::{SceneTable, TriMesh};
 use std::fmt;
@@ -35,9 +35,9 @@ use std::sync::Arc;
 use thiserror::Error;
 
 /// In [`Attribute::indices`]: this element has no value.
-pub const NO_ROW: u32 = u32::MAX;
+pub const NO_ENTRY: u32 = u32::MAX;
 
-/// The most components that a row may have, those of a 4 × 4 matrix.
+/// The most components that an entry may have, those of a 4 × 4 matrix.
 pub const MAX_COMPONENTS: usize = 16;
 
 /// What the values mean.
@@ -95,7 +95,7 @@ impl fmt::Display for Domain {
     }
 }
 
-/// A table of values, and which element has which row of it.
+/// A table of values, and which element has which entry of it.
 ///
 /// Nothing holds these fields together but [`Self::validate`]: who makes an attribute, or changes the mesh
 /// under it, calls that before somebody else uses both.
@@ -108,13 +108,13 @@ pub struct Attribute {
     pub semantic: Semantic,
     /// What has a value.
     pub domain: Domain,
-    /// Values of a row, 1 to [`MAX_COMPONENTS`]; 1 for names.
+    /// Values of an entry, 1 to [`MAX_COMPONENTS`]; 1 for names.
     pub num_components: usize,
-    /// Whether integers stand for fractions: [`ScalarType::one`] is 1.
+    /// Whether integers stand for fractions: [`ComponentType::one`] is 1.
     pub is_normalized: bool,
-    /// The table, row by row.
+    /// The table, entry by entry.
     pub values: Values,
-    /// The row of each element, or [`NO_ROW`]. `None`: element k has row k.
+    /// The entry of each element, or [`NO_ENTRY`]. `None`: element k has entry k.
     pub indices: Option<Vec<u32>>,
 }
 
@@ -123,43 +123,43 @@ pub struct Attribute {
 #[non_exhaustive]
 pub enum AttributeError {
     /// No components, too many, or names of several.
-    #[error("rows of {num_components} components")]
+    #[error("entries of {num_components} components")]
     Components {
         /// How many there are.
         num_components: usize,
     },
-    /// The last row is incomplete.
-    #[error("{num_values} values are no whole number of rows of {num_components}")]
+    /// The last entry is incomplete.
+    #[error("{num_values} values are no whole number of entries of {num_components}")]
     Ragged {
         /// Values in the table.
         num_values: usize,
-        /// Values of a row.
+        /// Values of an entry.
         num_components: usize,
     },
-    /// There is not one row, or index, for each element.
-    #[error("{found} rows or indices for {expected} {domain}")]
+    /// There is not one entry, or index, for each element.
+    #[error("{found} entries or indices for {expected} {domain}")]
     Count {
         /// What should have one each.
         domain: Domain,
         /// How many of these the mesh has.
         expected: usize,
-        /// How many rows or indices there are.
+        /// How many entries or indices there are.
         found: usize,
     },
-    /// An index names a row that does not exist.
-    #[error("element {element} has row {index}, but there are {num_rows}")]
+    /// An index names an entry that does not exist.
+    #[error("element {element} has entry {index}, but there are {num_entries}")]
     IndexOutOfRange {
         /// Zero-based element.
         element: usize,
         /// The index it holds.
         index: u32,
-        /// Rows of the table.
-        num_rows: usize,
+        /// Entries of the table.
+        num_entries: usize,
     },
 }
 
 impl Attribute {
-    /// An attribute whose element k has row k, not normalised. Not validated.
+    /// An attribute whose element k has entry k, not normalised. Not validated.
     pub fn new(
         name: impl Into<String>,
         semantic: Semantic,
@@ -178,33 +178,35 @@ impl Attribute {
         }
     }
 
-    /// Rows of the table.
-    pub fn num_rows(&self) -> usize {
+    /// Entries of the table.
+    pub fn num_entries(&self) -> usize {
         self.values.len() / self.num_components.max(1)
     }
 
-    /// The row of an element, `None` if it has none.
-    pub fn row(&self, element: usize) -> Option<usize> {
+    /// The entry of an element, `None` if it has none.
+    pub fn entry(&self, element: usize) -> Option<usize> {
         match &self.indices {
-            None => Some(element).filter(|&row| row < self.num_rows()),
-            Some(indices) => indices.get(element).filter(|&&row| row != NO_ROW).map(|&row| row as usize),
+            None => Some(element).filter(|&entry| entry < self.num_entries()),
+            Some(indices) => {
+                indices.get(element).filter(|&&entry| entry != NO_ENTRY).map(|&entry| entry as usize)
+            }
         }
     }
 
-    /// The row at a corner of a triangle of `mesh`, whatever the domain.
-    pub fn row_at_corner(&self, mesh: &TriMesh, triangle: usize, corner: usize) -> Option<usize> {
+    /// The entry at a corner of a triangle of `mesh`, whatever the domain.
+    pub fn entry_at_corner(&self, mesh: &TriMesh, triangle: usize, corner: usize) -> Option<usize> {
         match self.domain {
-            Domain::Vertex => self.row(*mesh.triangles().get(triangle)?.get(corner)? as usize),
-            Domain::Corner => self.row(3 * triangle + corner),
-            Domain::Face => self.row(triangle),
+            Domain::Vertex => self.entry(*mesh.triangles().get(triangle)?.get(corner)? as usize),
+            Domain::Corner => self.entry(3 * triangle + corner),
+            Domain::Triangle => self.entry(triangle),
         }
     }
 
-    /// Component `k` of a row as a number: a fraction if the attribute is normalised. `None` for names and
+    /// Component `k` of an entry as a number: a fraction if the attribute is normalised. `None` for names and
     /// beyond the end.
-    pub fn number(&self, row: usize, k: usize) -> Option<f64> {
-        let value = self.values.number(row * self.num_components + k)?;
-        let one = self.values.scalar_type()?.one();
+    pub fn number(&self, entry: usize, k: usize) -> Option<f64> {
+        let value = self.values.number(entry * self.num_components + k)?;
+        let one = self.values.component_type()?.one();
         // The most negative integer stands for -1 as well.
         Some(if self.is_normalized { (value / one).max(-1.0) } else { value })
     }
@@ -215,23 +217,23 @@ impl Attribute {
         if self.domain != Domain::Corner {
             return None;
         }
-        let mut rows = vec![None; mesh.num_vertices()];
+        let mut entries = vec![None; mesh.num_vertices()];
         for (t, triangle) in mesh.triangles().iter().enumerate() {
             for (c, &vertex) in triangle.iter().enumerate() {
-                let row = self.row(3 * t + c);
-                match rows[vertex as usize] {
-                    None => rows[vertex as usize] = Some(row),
-                    Some(first) if first == row || self.rows_are_equal(first?, row?) => {}
+                let entry = self.entry(3 * t + c);
+                match entries[vertex as usize] {
+                    None => entries[vertex as usize] = Some(entry),
+                    Some(first) if first == entry || self.entries_are_equal(first?, entry?) => {}
                     Some(_) => return None,
                 }
             }
         }
-        let index = |row: Option<Option<usize>>| row.flatten().map_or(NO_ROW, |row| row as u32);
-        let indices = Some(rows.into_iter().map(index).collect());
+        let index = |entry: Option<Option<usize>>| entry.flatten().map_or(NO_ENTRY, |entry| entry as u32);
+        let indices = Some(entries.into_iter().map(index).collect());
         Some(Self { domain: Domain::Vertex, indices, ..self.clone() })
     }
 
-    fn rows_are_equal(&self, a: usize, b: usize) -> bool {
+    fn entries_are_equal(&self, a: usize, b: usize) -> bool {
         let n = self.num_components;
         match &self.values {
             Values::Names(names) => names.get(a) == names.get(b),
@@ -239,7 +241,7 @@ impl Attribute {
         }
     }
 
-    /// Checks that the table is whole and every element of `mesh` has a row of it or none.
+    /// Checks that the table is whole and every element of `mesh` has an entry of it or none.
     ///
     /// # Errors
     /// The first of these rules that is broken, in the order of the variants of [`AttributeError`].
@@ -252,17 +254,17 @@ impl Attribute {
         if !num_values.is_multiple_of(num_components) {
             return Err(AttributeError::Ragged { num_values, num_components });
         }
-        let num_rows = self.num_rows();
+        let num_entries = self.num_entries();
         let (domain, expected) = (self.domain, self.domain.num_elements(mesh));
-        let found = self.indices.as_ref().map_or(num_rows, Vec::len);
+        let found = self.indices.as_ref().map_or(num_entries, Vec::len);
         if found != expected {
             return Err(AttributeError::Count { domain, expected, found });
         }
         let indices = self.indices.as_deref().unwrap_or_default();
-        let is_bad = |&index: &u32| index != NO_ROW && index as usize >= num_rows;
+        let is_bad = |&index: &u32| index != NO_ENTRY && index as usize >= num_entries;
         match indices.iter().position(is_bad) {
             Some(element) => {
-                Err(AttributeError::IndexOutOfRange { element, index: indices[element], num_rows })
+                Err(AttributeError::IndexOutOfRange { element, index: indices[element], num_entries })
             }
             None => Ok(()),
         }
@@ -326,7 +328,7 @@ mod tests {
     #[test]
     fn each_broken_rule_has_its_error() {
         let mesh = two_triangles();
-        let good = uv(&[0, 1, 2, 0, 2, NO_ROW]);
+        let good = uv(&[0, 1, 2, 0, 2, NO_ENTRY]);
         assert_eq!(good.validate(&mesh), Ok(()));
         let components = |n| Attribute { num_components: n, ..good.clone() }.validate(&mesh);
         assert_eq!(components(0), Err(AttributeError::Components { num_components: 0 }));
@@ -336,34 +338,34 @@ mod tests {
         assert_eq!(names.validate(&mesh), Err(AttributeError::Components { num_components: 2 }));
         let count = |domain, expected, found| Err(AttributeError::Count { domain, expected, found });
         assert_eq!(uv(&[0; 5]).validate(&mesh), count(Domain::Corner, 6, 5));
-        let own_rows = |domain| Attribute { domain, indices: None, ..good.clone() }.validate(&mesh);
-        assert_eq!(own_rows(Domain::Face), count(Domain::Face, 2, 4));
-        assert_eq!(own_rows(Domain::Vertex), Ok(()));
-        let beyond = AttributeError::IndexOutOfRange { element: 4, index: 4, num_rows: 4 };
+        let own_entries = |domain| Attribute { domain, indices: None, ..good.clone() }.validate(&mesh);
+        assert_eq!(own_entries(Domain::Triangle), count(Domain::Triangle, 2, 4));
+        assert_eq!(own_entries(Domain::Vertex), Ok(()));
+        let beyond = AttributeError::IndexOutOfRange { element: 4, index: 4, num_entries: 4 };
         assert_eq!(uv(&[0, 1, 2, 3, 4, 5]).validate(&mesh), Err(beyond));
     }
 
     #[test]
-    fn rows_are_found_in_every_domain() {
+    fn entries_are_found_in_every_domain() {
         let mesh = two_triangles();
-        let corner = uv(&[0, 1, 2, 3, NO_ROW, 2]);
-        assert_eq!([0, 1, 2].map(|c| corner.row_at_corner(&mesh, 1, c)), [Some(3), None, Some(2)]);
+        let corner = uv(&[0, 1, 2, 3, NO_ENTRY, 2]);
+        assert_eq!([0, 1, 2].map(|c| corner.entry_at_corner(&mesh, 1, c)), [Some(3), None, Some(2)]);
         let vertex = Attribute { domain: Domain::Vertex, indices: None, ..corner.clone() };
-        assert_eq!([0, 1, 2].map(|c| vertex.row_at_corner(&mesh, 1, c)), [Some(0), Some(2), Some(3)]);
-        let face = Attribute { domain: Domain::Face, indices: Some(vec![1, 2]), ..corner };
-        assert_eq!([0, 1, 2].map(|c| face.row_at_corner(&mesh, 1, c)), [Some(2); 3]);
-        assert_eq!((face.row(2), face.row_at_corner(&mesh, 2, 0)), (None, None));
+        assert_eq!([0, 1, 2].map(|c| vertex.entry_at_corner(&mesh, 1, c)), [Some(0), Some(2), Some(3)]);
+        let face = Attribute { domain: Domain::Triangle, indices: Some(vec![1, 2]), ..corner };
+        assert_eq!([0, 1, 2].map(|c| face.entry_at_corner(&mesh, 1, c)), [Some(2); 3]);
+        assert_eq!((face.entry(2), face.entry_at_corner(&mesh, 2, 0)), (None, None));
     }
 
     #[test]
     fn corners_without_seam_are_attributes_of_vertices() {
         let mesh = two_triangles();
-        // Rows 2 and 3 are equal, rows 0 and 1 are not.
+        // Entries 2 and 3 are equal, entries 0 and 1 are not.
         let vertex = uv(&[0, 1, 2, 0, 3, 1]).without_seams(&mesh).unwrap();
         assert_eq!(vertex.validate(&mesh), Ok(()));
         assert_eq!(vertex.indices, Some(vec![0, 1, 2, 1]));
         assert_eq!(uv(&[0, 1, 2, 1, 2, 1]).without_seams(&mesh), None);
-        assert_eq!(uv(&[0, 1, 2, NO_ROW, 2, 1]).without_seams(&mesh), None);
+        assert_eq!(uv(&[0, 1, 2, NO_ENTRY, 2, 1]).without_seams(&mesh), None);
         assert_eq!(vertex.without_seams(&mesh), None);
     }
 
@@ -372,7 +374,7 @@ mod tests {
         let values = Values::I8(vec![-128, -127, 0, 127]);
         let raw = Attribute::new("n", Semantic::Generic, Domain::Vertex, 1, values);
         let fraction = Attribute { is_normalized: true, ..raw.clone() };
-        assert_eq!([0, 1, 2, 3].map(|row| raw.number(row, 0)), [-128.0, -127.0, 0.0, 127.0].map(Some));
-        assert_eq!([0, 1, 2, 3].map(|row| fraction.number(row, 0)), [-1.0, -1.0, 0.0, 1.0].map(Some));
+        assert_eq!([0, 1, 2, 3].map(|entry| raw.number(entry, 0)), [-128.0, -127.0, 0.0, 127.0].map(Some));
+        assert_eq!([0, 1, 2, 3].map(|entry| fraction.number(entry, 0)), [-1.0, -1.0, 0.0, 1.0].map(Some));
     }
 }

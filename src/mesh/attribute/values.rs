@@ -2,7 +2,7 @@
 
 /// The type of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ScalarType {
+pub enum ComponentType {
     /// Signed, 8 bits.
     I8,
     /// Unsigned, 8 bits.
@@ -21,7 +21,7 @@ pub enum ScalarType {
     F64,
 }
 
-impl ScalarType {
+impl ComponentType {
     /// Every type, in the order of the variants.
     pub const ALL: [Self; 8] =
         [Self::I8, Self::U8, Self::I16, Self::U16, Self::I32, Self::U32, Self::F32, Self::F64];
@@ -106,35 +106,35 @@ macro_rules! with_vector {
 
 impl Values {
     /// An empty array of numbers.
-    pub fn new(scalar: ScalarType) -> Self {
+    pub fn new(scalar: ComponentType) -> Self {
         match scalar {
-            ScalarType::I8 => Self::I8(Vec::new()),
-            ScalarType::U8 => Self::U8(Vec::new()),
-            ScalarType::I16 => Self::I16(Vec::new()),
-            ScalarType::U16 => Self::U16(Vec::new()),
-            ScalarType::I32 => Self::I32(Vec::new()),
-            ScalarType::U32 => Self::U32(Vec::new()),
-            ScalarType::F32 => Self::F32(Vec::new()),
-            ScalarType::F64 => Self::F64(Vec::new()),
+            ComponentType::I8 => Self::I8(Vec::new()),
+            ComponentType::U8 => Self::U8(Vec::new()),
+            ComponentType::I16 => Self::I16(Vec::new()),
+            ComponentType::U16 => Self::U16(Vec::new()),
+            ComponentType::I32 => Self::I32(Vec::new()),
+            ComponentType::U32 => Self::U32(Vec::new()),
+            ComponentType::F32 => Self::F32(Vec::new()),
+            ComponentType::F64 => Self::F64(Vec::new()),
         }
     }
 
     /// An empty array of the same type.
     pub fn emptied(&self) -> Self {
-        self.scalar_type().map_or(Self::Names(Vec::new()), Self::new)
+        self.component_type().map_or(Self::Names(Vec::new()), Self::new)
     }
 
     /// The type of the numbers, `None` if these are names.
-    pub fn scalar_type(&self) -> Option<ScalarType> {
+    pub fn component_type(&self) -> Option<ComponentType> {
         match self {
-            Self::I8(_) => Some(ScalarType::I8),
-            Self::U8(_) => Some(ScalarType::U8),
-            Self::I16(_) => Some(ScalarType::I16),
-            Self::U16(_) => Some(ScalarType::U16),
-            Self::I32(_) => Some(ScalarType::I32),
-            Self::U32(_) => Some(ScalarType::U32),
-            Self::F32(_) => Some(ScalarType::F32),
-            Self::F64(_) => Some(ScalarType::F64),
+            Self::I8(_) => Some(ComponentType::I8),
+            Self::U8(_) => Some(ComponentType::U8),
+            Self::I16(_) => Some(ComponentType::I16),
+            Self::U16(_) => Some(ComponentType::U16),
+            Self::I32(_) => Some(ComponentType::I32),
+            Self::U32(_) => Some(ComponentType::U32),
+            Self::F32(_) => Some(ComponentType::F32),
+            Self::F64(_) => Some(ComponentType::F64),
             Self::Names(_) => None,
         }
     }
@@ -154,7 +154,7 @@ impl Values {
         if let Self::Names(names) = self { Some(names) } else { None }
     }
 
-    /// The bits of the number at `index`, in the lowest [`ScalarType::num_bytes`] bytes, the others 0.
+    /// The bits of the number at `index`, in the lowest [`ComponentType::num_bytes`] bytes, the others 0.
     /// `None` beyond the end, and of names.
     pub fn bits(&self, index: usize) -> Option<u64> {
         Some(match self {
@@ -172,7 +172,7 @@ impl Values {
 
     /// The number at `index` as it is, not normalised. `None` beyond the end, and of names.
     pub fn number(&self, index: usize) -> Option<f64> {
-        Some(self.scalar_type()?.value(self.bits(index)?))
+        Some(self.component_type()?.value(self.bits(index)?))
     }
 
     /// Appends the number that has these bits (see [`Self::bits`]). Does nothing to names.
@@ -237,7 +237,7 @@ impl PartialEq for Values {
         match (self, other) {
             (Self::Names(a), Self::Names(b)) => a == b,
             _ => {
-                self.scalar_type() == other.scalar_type()
+                self.component_type() == other.component_type()
                     && self.len() == other.len()
                     && (0..self.len()).all(|k| self.bits(k) == other.bits(k))
             }
@@ -252,18 +252,18 @@ mod tests {
     #[test]
     fn bits_come_back_in_every_type() {
         for (scalar, bits, value) in [
-            (ScalarType::I8, 0xff, -1.0),
-            (ScalarType::U8, 0xff, 255.0),
-            (ScalarType::I16, 0x8000, -32768.0),
-            (ScalarType::U16, 0x8000, 32768.0),
-            (ScalarType::I32, 0xffff_fffe, -2.0),
-            (ScalarType::U32, 0xffff_fffe, 4_294_967_294.0),
-            (ScalarType::F32, u64::from(1.5f32.to_bits()), 1.5),
-            (ScalarType::F64, (-0.0f64).to_bits(), -0.0),
+            (ComponentType::I8, 0xff, -1.0),
+            (ComponentType::U8, 0xff, 255.0),
+            (ComponentType::I16, 0x8000, -32768.0),
+            (ComponentType::U16, 0x8000, 32768.0),
+            (ComponentType::I32, 0xffff_fffe, -2.0),
+            (ComponentType::U32, 0xffff_fffe, 4_294_967_294.0),
+            (ComponentType::F32, u64::from(1.5f32.to_bits()), 1.5),
+            (ComponentType::F64, (-0.0f64).to_bits(), -0.0),
         ] {
             let mut values = Values::new(scalar);
             values.push_bits(bits);
-            assert_eq!((values.scalar_type(), values.len()), (Some(scalar), 1));
+            assert_eq!((values.component_type(), values.len()), (Some(scalar), 1));
             assert_eq!((values.bits(0), values.number(0)), (Some(bits), Some(value)), "{scalar:?}");
             assert_eq!((values.bits(1), values.number(1)), (None, None));
             values.set_bits(0, 0);

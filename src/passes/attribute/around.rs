@@ -2,7 +2,7 @@
 
 use super::rows::Rows;
 use crate::mesh::surface::{NO_CORNER, next, prev};
-use crate::mesh::{NO_ROW, Surface};
+use crate::mesh::{NO_ENTRY, Surface};
 use crate::passes::GridMesh;
 use crate::util::simd4::Lanes;
 
@@ -49,7 +49,7 @@ impl Around {
 
     /// Adds a neighbour unless it has no value.
     pub(super) fn push(&mut self, row: u32, way: Lanes) {
-        if row == NO_ROW {
+        if row == NO_ENTRY {
             self.num_missing += 1;
         } else {
             self.ring.push(Known { row, way });
@@ -71,14 +71,14 @@ impl Around {
         let surface = &mesh.surface;
         let origin = mesh.positions[vertex as usize];
         let way = |v: u32| Lanes::between(origin, mesh.positions[v as usize]);
-        let mut last = (u32::MAX, NO_ROW);
+        let mut last = (u32::MAX, NO_ENTRY);
         let mut first = last;
         for (i, &corner) in corners.iter().enumerate() {
             let ends = [next(corner), prev(corner)];
             let [a, b] = ends.map(|c| surface.vertex(c));
             self.normal += way(a).cross(way(b));
             for (c, u) in [(ends[0], a), (ends[1], b)] {
-                let seen = (u, if u < vertex { rows.at(surface, c) } else { NO_ROW });
+                let seen = (u, if u < vertex { rows.at(surface, c) } else { NO_ENTRY });
                 let is_first_again = closed && i + 1 == corners.len() && c == ends[1] && seen == first;
                 if u < vertex && seen != last && !is_first_again {
                     self.push(seen.1, way(u));
@@ -103,7 +103,7 @@ impl Around {
         let at = |c: u32| rows.at(surface, c);
         let (a, b, tip) = (at(next(corner)), at(prev(corner)), at(across));
         let is_seam = at(prev(across)) != a || at(next(across)) != b;
-        if is_seam || [a, b, tip].contains(&NO_ROW) {
+        if is_seam || [a, b, tip].contains(&NO_ENTRY) {
             return;
         }
         let [origin, there] = [vertex, surface.vertex(across)].map(|v| mesh.positions[v as usize]);

@@ -1,7 +1,7 @@
 //! What a stream says of its attributes before it has any values (`format/SPEC.md`, section 4.5).
 
 use super::octahedron::Octahedron;
-use crate::mesh::{Domain, MAX_COMPONENTS, ScalarType, Semantic, Values};
+use crate::mesh::{ComponentType, Domain, MAX_COMPONENTS, Semantic, Values};
 use crate::util::budget::Budget;
 use crate::util::bytes::Reader;
 #[cfg(any(feature = "encoder", test))]
@@ -37,7 +37,7 @@ pub(crate) struct Declaration {
     pub(crate) num_components: usize,
     pub(crate) is_normalized: bool,
     /// `None`: names.
-    pub(crate) scalar: Option<ScalarType>,
+    pub(crate) scalar: Option<ComponentType>,
     /// Whether there are elements without value.
     pub(crate) has_missing: bool,
     pub(crate) coding: Coding,
@@ -97,7 +97,7 @@ impl Declaration {
                 }
             }
             Coding::Octahedral { bits } => {
-                let one = self.scalar.filter(|s| s.is_integer()).map_or(1.0, ScalarType::one);
+                let one = self.scalar.filter(|s| s.is_integer()).map_or(1.0, ComponentType::one);
                 let direction = Octahedron::new(*bits).direction([channels[0], channels[1]]);
                 direction.into_iter().for_each(|x| push(values, x * one));
             }
@@ -115,18 +115,18 @@ impl Declaration {
 }
 
 /// The bits of the number of a type that is closest to `x`: halves go up, ends of the range stay ends.
-pub(crate) fn bits_of(scalar: ScalarType, x: f64) -> u64 {
+pub(crate) fn bits_of(scalar: ComponentType, x: f64) -> u64 {
     // A cast from floats saturates.
     let whole = (x + 0.5).floor();
     match scalar {
-        ScalarType::I8 => u64::from(whole as i8 as u8),
-        ScalarType::U8 => u64::from(whole as u8),
-        ScalarType::I16 => u64::from(whole as i16 as u16),
-        ScalarType::U16 => u64::from(whole as u16),
-        ScalarType::I32 => u64::from(whole as i32 as u32),
-        ScalarType::U32 => u64::from(whole as u32),
-        ScalarType::F32 => u64::from((x as f32).to_bits()),
-        ScalarType::F64 => x.to_bits(),
+        ComponentType::I8 => u64::from(whole as i8 as u8),
+        ComponentType::U8 => u64::from(whole as u8),
+        ComponentType::I16 => u64::from(whole as i16 as u16),
+        ComponentType::U16 => u64::from(whole as u16),
+        ComponentType::I32 => u64::from(whole as i32 as u32),
+        ComponentType::U32 => u64::from(whole as u32),
+        ComponentType::F32 => u64::from((x as f32).to_bits()),
+        ComponentType::F64 => x.to_bits(),
     }
 }
 
@@ -188,7 +188,7 @@ fn read_declaration(reader: &mut Reader, budget: &mut Budget) -> Option<Declarat
     let flags = reader.u8()?;
     let scalar = match reader.u8()? {
         NAMES => None,
-        code => Some(*ScalarType::ALL.get(usize::from(code))?),
+        code => Some(*ComponentType::ALL.get(usize::from(code))?),
     };
     let num_components = reader.varint()? as usize;
     let most = if scalar.is_none() { 1 } else { MAX_COMPONENTS };
@@ -202,7 +202,7 @@ fn read_declaration(reader: &mut Reader, budget: &mut Budget) -> Option<Declarat
 
 fn read_coding(
     reader: &mut Reader,
-    scalar: Option<ScalarType>,
+    scalar: Option<ComponentType>,
     num_components: usize,
     budget: &mut Budget,
 ) -> Option<Coding> {
@@ -273,7 +273,7 @@ fn write_declaration(out: &mut Vec<u8>, declaration: &Declaration) {
     out.push(Domain::ALL.iter().position(|&d| d == declaration.domain).unwrap_or(0) as u8);
     let flag = |is_set: bool, flag: u8| if is_set { flag } else { 0 };
     out.push(flag(declaration.is_normalized, NORMALIZED) | flag(declaration.has_missing, HAS_MISSING));
-    let place = |scalar| ScalarType::ALL.iter().position(|&s| s == scalar).unwrap_or(0) as u8;
+    let place = |scalar| ComponentType::ALL.iter().position(|&s| s == scalar).unwrap_or(0) as u8;
     out.push(declaration.scalar.map_or(NAMES, place));
     write_varint(out, declaration.num_components as u32);
     match &declaration.coding {
@@ -320,17 +320,24 @@ mod tests {
         let numbers = Coding::Table { rows: Values::I16(vec![-1, 7, 300, 4]) };
         Declarations {
             list: vec![
-                declaration("vt", Semantic::TexCoord(3), Domain::Corner, Some(ScalarType::F32), 2, uniform),
+                declaration(
+                    "vt",
+                    Semantic::TexCoord(3),
+                    Domain::Corner,
+                    Some(ComponentType::F32),
+                    2,
+                    uniform,
+                ),
                 declaration(
                     "n",
                     Semantic::Normal,
                     Domain::Vertex,
-                    Some(ScalarType::I8),
+                    Some(ComponentType::I8),
                     3,
                     Coding::Octahedral { bits: 8 },
                 ),
-                declaration("usemtl", Semantic::Material, Domain::Face, None, 1, names),
-                declaration("ids", Semantic::Generic, Domain::Face, Some(ScalarType::I16), 2, numbers),
+                declaration("usemtl", Semantic::Material, Domain::Triangle, None, 1, names),
+                declaration("ids", Semantic::Generic, Domain::Triangle, Some(ComponentType::I16), 2, numbers),
             ],
             material_libraries: Arc::new(["a.mtl".to_owned()]),
             bytes: vec![7, 0, 300],
@@ -373,7 +380,7 @@ mod tests {
         assert_eq!(restore(1, &[0, 0]), Values::I8(vec![0, 0, 127]));
         assert_eq!(restore(2, &[1]), Values::Names(vec!["ü".into()]));
         assert_eq!(restore(3, &[1]), Values::I16(vec![300, 4]));
-        assert_eq!(bits_of(ScalarType::U8, 300.0), 255);
-        assert_eq!(bits_of(ScalarType::I8, -0.5), 0);
+        assert_eq!(bits_of(ComponentType::U8, 300.0), 255);
+        assert_eq!(bits_of(ComponentType::I8, -0.5), 0);
     }
 }

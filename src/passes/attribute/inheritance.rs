@@ -5,7 +5,7 @@ use super::star::{Fan, Star};
 use super::truth::Target;
 use crate::entropy::context_mixer::PlainBits;
 use crate::entropy::range_coder::BitCoder;
-use crate::mesh::NO_ROW;
+use crate::mesh::NO_ENTRY;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 use crate::passes::GridMesh;
 
@@ -52,7 +52,7 @@ impl Inheritance {
         if !is_kept {
             self.code_exceptions(coder, inherited, target, rows, star.vertex);
         }
-        self.exceptions.iter().for_each(|&(corner, _)| rows.of[corner as usize] = NO_ROW);
+        self.exceptions.iter().for_each(|&(corner, _)| rows.of[corner as usize] = NO_ENTRY);
     }
 
     /// Reads what the patch had.

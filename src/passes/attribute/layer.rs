@@ -74,7 +74,7 @@ impl Layer {
         let surface = &mesh.surface;
         let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
         self.rows.resize(num_vertices, num_faces);
-        let by_faces = patches.is_none() && self.rows.domain == Domain::Face;
+        let by_faces = patches.is_none() && self.rows.domain == Domain::Triangle;
         let count = if by_faces { num_faces } else { num_vertices - first };
         let target = Target { mesh, truth };
         while *place < count {
@@ -90,8 +90,8 @@ impl Layer {
             match (self.rows.domain, star) {
                 (Domain::Vertex, _) => self.code_vertex(coder, target, vertex, desk)?,
                 (Domain::Corner, star) => self.wedges(target, desk).code(coder, vertex, star)?,
-                (Domain::Face, None) => self.faces(target, desk).code_base(coder, *place as u32)?,
-                (Domain::Face, Some(star)) => self.faces(target, desk).code_star(coder, star)?,
+                (Domain::Triangle, None) => self.faces(target, desk).code_base(coder, *place as u32)?,
+                (Domain::Triangle, Some(star)) => self.faces(target, desk).code_star(coder, star)?,
             }
             *place += 1;
         }

@@ -9,7 +9,7 @@ use super::truth::Wanted;
 use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
 use crate::entropy::range_coder::BitCoder;
 use crate::entropy::tables::Tables;
-use crate::mesh::{NO_ROW, Semantic};
+use crate::mesh::{NO_ENTRY, Semantic};
 use crate::passes::{GridMesh, Malformed};
 
 /// Neighbouring rows that a row may repeat.
@@ -71,7 +71,7 @@ impl RowScratch {
         found.clear();
         let around = self.around.ring.iter().map(|known| known.row);
         let repeatable: &[u32] = if is_exception { &self.repeatable } else { &[] };
-        for row in around.chain(repeatable.iter().copied().filter(|&row| row != NO_ROW)) {
+        for row in around.chain(repeatable.iter().copied().filter(|&row| row != NO_ENTRY)) {
             match found.iter().position(|&(other, _)| rows.are_equal(other, row)) {
                 Some(k) => found[k].1 += 1,
                 // Longer rings tell no more.
@@ -105,7 +105,7 @@ impl RowCoder<'_> {
         is_exception: bool,
     ) -> Result<u32, Malformed> {
         if self.models.has_missing && self.code_missing(coder, wanted) {
-            return Ok(NO_ROW);
+            return Ok(NO_ENTRY);
         }
         if let Some(row) = self.code_repeated(coder, wanted, is_exception) {
             return Ok(row);

@@ -1,6 +1,6 @@
 //! The rows of an attribute, and which of them an element has.
 
-use crate::mesh::{Domain, NO_ROW, Surface};
+use crate::mesh::{Domain, NO_ENTRY, Surface};
 
 /// Rows of integers, and the row of each vertex, corner or face.
 #[derive(Clone)]
@@ -12,7 +12,7 @@ pub(crate) struct Rows {
     roughness: Vec<i8>,
     /// The row that was appended last.
     last: Vec<i32>,
-    /// Per element; [`NO_ROW`] for none, or none yet.
+    /// Per element; [`NO_ENTRY`] for none, or none yet.
     pub(crate) of: Vec<u32>,
 }
 
@@ -60,11 +60,11 @@ impl Rows {
         if self.domain == Domain::Vertex || self.len() <= self.of.len() {
             return;
         }
-        let mut place = vec![NO_ROW; self.len()];
+        let mut place = vec![NO_ENTRY; self.len()];
         let (mut values, mut roughness) = (Vec::new(), Vec::new());
-        for row in self.of.iter_mut().filter(|row| **row != NO_ROW) {
+        for row in self.of.iter_mut().filter(|row| **row != NO_ENTRY) {
             let old = *row as usize;
-            if place[old] == NO_ROW {
+            if place[old] == NO_ENTRY {
                 place[old] = roughness.len() as u32;
                 values.extend_from_slice(&self.values[old * self.num_channels..][..self.num_channels]);
                 roughness.push(self.roughness[old]);
@@ -80,14 +80,14 @@ impl Rows {
         let element = match self.domain {
             Domain::Vertex => surface.vertex(corner),
             Domain::Corner => corner,
-            Domain::Face => corner / 3,
+            Domain::Triangle => corner / 3,
         };
-        self.of.get(element as usize).copied().unwrap_or(NO_ROW)
+        self.of.get(element as usize).copied().unwrap_or(NO_ENTRY)
     }
 
     /// Whether two rows say the same.
     pub(super) fn are_equal(&self, a: u32, b: u32) -> bool {
-        a == b || a != NO_ROW && b != NO_ROW && self.get(a) == self.get(b)
+        a == b || a != NO_ENTRY && b != NO_ENTRY && self.get(a) == self.get(b)
     }
 
     /// Makes room for the elements of a mesh.
@@ -95,8 +95,8 @@ impl Rows {
         let count = match self.domain {
             Domain::Vertex => num_vertices,
             Domain::Corner => 3 * num_faces,
-            Domain::Face => num_faces,
+            Domain::Triangle => num_faces,
         };
-        self.of.resize(count, NO_ROW);
+        self.of.resize(count, NO_ENTRY);
     }
 }

@@ -5,7 +5,7 @@ use super::star::Fan;
 use super::truth::Target;
 use crate::entropy::context_mixer::PlainBits;
 use crate::entropy::range_coder::BitCoder;
-use crate::mesh::NO_ROW;
+use crate::mesh::NO_ENTRY;
 use crate::mesh::surface::{next, prev};
 use crate::passes::GridMesh;
 
@@ -72,6 +72,6 @@ impl Fan<'_> {
             return UNKNOWN;
         }
         let [left, right] = [prev(self.before(i)), next(corner)].map(|c| rows.of[c as usize]);
-        if (left == NO_ROW) != (right == NO_ROW) { UNKNOWN } else { usize::from(left != right) }
+        if (left == NO_ENTRY) != (right == NO_ENTRY) { UNKNOWN } else { usize::from(left != right) }
     }
 }

@@ -1,7 +1,7 @@
 //! What an encoder wants the rows to become.
 
 use super::rows::Rows;
-use crate::mesh::NO_ROW;
+use crate::mesh::NO_ENTRY;
 use crate::passes::GridMesh;
 
 /// What an encoder wants a layer to become: rows of its own numbering.
@@ -26,8 +26,8 @@ impl Wanted<'_> {
     pub(super) fn is(&self, rows: &Rows, row: u32) -> bool {
         match self {
             Wanted::Unknown => false,
-            Wanted::Missing => row == NO_ROW,
-            Wanted::Row(wanted) => row != NO_ROW && rows.get(row) == *wanted,
+            Wanted::Missing => row == NO_ENTRY,
+            Wanted::Row(wanted) => row != NO_ENTRY && rows.get(row) == *wanted,
         }
     }
 }
@@ -44,7 +44,7 @@ impl<'a> Target<'a> {
     pub(super) fn wanted(&self, element: u32, rows: &Rows) -> Wanted<'a> {
         let Some(Truth { of, rows: channels }) = self.truth else { return Wanted::Unknown };
         match of[element as usize] {
-            NO_ROW => Wanted::Missing,
+            NO_ENTRY => Wanted::Missing,
             row => Wanted::Row(&channels[row as usize * rows.num_channels..][..rows.num_channels]),
         }
     }

@@ -9,7 +9,7 @@ use super::truth::Target;
 use crate::entropy::context_mixer::PlainBits;
 use crate::entropy::range_coder::BitCoder;
 use crate::mesh::surface::{NO_CORNER, next, prev};
-use crate::mesh::{NO_ROW, Surface};
+use crate::mesh::{NO_ENTRY, Surface};
 use crate::passes::Malformed;
 use crate::util::simd4::Lanes;
 
@@ -106,7 +106,7 @@ impl WedgeCoder<'_> {
         around.push(of(far), way(far));
         for &c in self.scratch.corners.iter().filter(|&&c| c != own && of(c) == of(own)) {
             for end in [next(c), prev(c)] {
-                if of(end) != NO_ROW && surface.vertex(end) != surface.vertex(corner) {
+                if of(end) != NO_ENTRY && surface.vertex(end) != surface.vertex(corner) {
                     around.tips.push(Known { row: of(end), way: way(end) });
                 }
             }
