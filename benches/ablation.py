@@ -68,7 +68,7 @@ PARTS = {
         ("src/passes/coordinates.rs", r"sign: 2 \* class \+ usize::from\(guess\.leans_down\)", "sign: 0"),
     ],
     "Connectivity: whether patches fit the rule, as a context": [
-        ("src/passes/connectivity.rs", r"let state = \(size \* FITS \+ self\.fit as usize\) \* FITS \+ fit as usize;", "let (fit, after) = (Fit::Unknown, Fit::Unknown); let state = (size * FITS + fit as usize) * FITS + fit as usize;"),
+        ("src/passes/connectivity/contexts.rs", r"fits\.map\(\|fit\| fit as usize\)", "[fits[0], Fit::Unknown, Fit::Unknown].map(|fit| fit as usize)"),
     ],
     "Connectivity: holes closed in the reverse order of the walk": [
         (PARTITION, r"order\.into_iter\(\)\.rev\(\)\.partition", "order.into_iter().partition"),
@@ -93,7 +93,7 @@ PARTS = {
         (PARTITION, r"thinning\.tolerance,", "f64::INFINITY,"),
     ],
     "Compensation: coarse meshes shown where they shrink less": [
-        ("src/encoder/write.rs", r"let compensation = if is_last \{", "let compensation = if is_last || true {"),
+        ("src/encoder/pass_writer.rs", r"let compensation = if is_last \{", "let compensation = if is_last || true {"),
     ],
 }
 

@@ -20,7 +20,11 @@ const WRITTEN: [(&str, &str, &str); 14] = [
     ("info ball.lwc --plot curve.png", "curve.png", " pixels"),
     ("filter ball.ply --gain 5..=0 -o smooth.ply", "smooth.ply", "642 vertices, 1280 faces"),
     ("filter ball.ply --denoise -o clean.stl", "clean.stl", "642 vertices, 1280 faces"),
-    ("edit ball.lwc coarse.obj -o bent.glb", "bent.glb", "642 vertices, 1280 triangles, details above level 2"),
+    (
+        "edit ball.lwc coarse.obj -o bent.glb",
+        "bent.glb",
+        "642 vertices, 1280 triangles, details above level 2",
+    ),
     ("encode ball.ply -o other.lwc", "other.lwc", "642 vertices, 1280 faces"),
     ("man pages", "pages", " manual pages"),
 ];

@@ -238,7 +238,7 @@ const ORDER_PER_FACE: u64 = 48;
 
 /// A trailing chunk, and what it refers to.
 #[derive(Clone, Copy)]
-pub(super) struct Beside<'a> {
+pub(super) struct NewChunk<'a> {
     pub(super) payload: &'a [u8],
     pub(super) mesh: &'a GridMesh,
     pub(super) grid: &'a Grid,
@@ -249,7 +249,7 @@ pub(super) struct Beside<'a> {
     pub(super) work: u64,
 }
 
-impl Beside<'_> {
+impl NewChunk<'_> {
     fn check_memory(&self, more: u64) -> Result<(), DecodeError> {
         Limits::check("memory", self.used + more, self.limits.max_memory)
     }
@@ -274,7 +274,7 @@ impl Extras {
     pub(super) fn read(
         &mut self,
         kind: u8,
-        chunk: Beside,
+        chunk: NewChunk,
         attributes: Option<&AttributeDecoder>,
     ) -> Result<u64, Refused> {
         let declared = attributes.map(|attributes| &attributes.declarations);
@@ -296,7 +296,7 @@ impl Extras {
     }
 
     /// Stitches the vertices added since the last time.
-    fn read_glue(&mut self, chunk: Beside) -> Result<(), Refused> {
+    fn read_glue(&mut self, chunk: NewChunk) -> Result<(), Refused> {
         chunk.check_memory(GLUE_PER_VERTEX * chunk.mesh.positions.len() as u64)?;
         let known = self.roots.len();
         let mut coder = RangeDecoder::new(chunk.payload);
@@ -308,8 +308,8 @@ impl Extras {
     }
 
     /// Takes the isolated vertices and the degenerate faces.
-    fn read_loose(&mut self, chunk: Beside) -> Result<(), Refused> {
-        let Beside { payload, mesh, grid, limits, .. } = chunk;
+    fn read_loose(&mut self, chunk: NewChunk) -> Result<(), Refused> {
+        let NewChunk { payload, mesh, grid, limits, .. } = chunk;
         let mut coder = RangeDecoder::new(payload);
         let counts = isolated_and_degenerate::code_counts(&mut coder, payload.len(), None)?;
         let num_joined = self.joined(mesh.positions.len()).first.len();
@@ -328,8 +328,8 @@ impl Extras {
     }
 
     /// Takes the exact positions.
-    fn read_exact(&mut self, chunk: Beside) -> Result<(), Refused> {
-        let Beside { payload, mesh, grid, .. } = chunk;
+    fn read_exact(&mut self, chunk: NewChunk) -> Result<(), Refused> {
+        let NewChunk { payload, mesh, grid, .. } = chunk;
         let ladders = exact::read_ladders(payload).ok_or(Malformed("the kinds of exact numbers"))?;
         let cells = self.of_vertices(&self.joined(mesh.positions.len()), &mesh.positions, |cell| cell);
         chunk.check_memory(EXACT_PER_VERTEX * cells.len() as u64)?;
@@ -339,8 +339,8 @@ impl Extras {
     }
 
     /// Takes values of attributes: exact ones, and those of isolated vertices and degenerate faces.
-    fn read_values(&mut self, chunk: Beside, attributes: &AttributeDecoder) -> Result<(), Refused> {
-        let Beside { payload, mesh, .. } = chunk;
+    fn read_values(&mut self, chunk: NewChunk, attributes: &AttributeDecoder) -> Result<(), Refused> {
+        let NewChunk { payload, mesh, .. } = chunk;
         let triangles = &mesh.surface.triangles;
         let list = &attributes.declarations.list;
         let (ladders, used) =
@@ -368,7 +368,7 @@ impl Extras {
     }
 
     /// Takes the order of the file.
-    fn read_order(&mut self, chunk: Beside) -> Result<(), Refused> {
+    fn read_order(&mut self, chunk: NewChunk) -> Result<(), Refused> {
         let mesh = chunk.mesh;
         let joined = self.joined(mesh.positions.len());
         let num_vertices = joined.first.len() + self.loose.as_ref().map_or(0, |loose| loose.cells.len());

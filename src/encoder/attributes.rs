@@ -1,10 +1,10 @@
 //! From attributes to integers: how each is declared, and the rows of its elements.
 
-use super::options::EncodeOptions;
+use super::options::{EncodeOptions, Input};
 use crate::bitstream::scene;
 use crate::error::EncodeError;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, ComponentType, Domain, NO_ENTRY, Semantic, TriMesh, Values};
+use crate::mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values};
 use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};
@@ -32,7 +32,7 @@ pub(super) struct QuantisedAttribute {
     pub(super) rows: Vec<i32>,
     /// The row of each vertex, corner or face of the surface, or [`NO_ENTRY`].
     pub(super) of: Vec<u32>,
-    /// The row of each isolated vertex, or of each degenerate face or its corners.
+    /// The row of each loose element of the mesh.
     pub(super) loose: HashMap<u32, u32>,
     /// Which of the seams' attributes it is, unless it belongs to vertices.
     pub(super) track: Option<usize>,
@@ -51,7 +51,7 @@ impl Quantised {
         seams
     }
 
-    /// What a stream with these values after its passes declares about them.
+    /// The declarations of a stream with these values after its passes.
     pub(super) fn declare(&self, values: &[Vec<u8>]) -> Declarations {
         Declarations {
             list: self.list.iter().map(|attribute| attribute.declaration.clone()).collect(),
@@ -80,16 +80,14 @@ impl Elements<'_> {
     }
 }
 
-/// Quantises the attributes of `mesh` for a surface, and for what is kept outside it.
+/// Quantises the attributes of the surface, and of the loose elements that are kept.
 ///
 /// # Errors
 /// If one does not fit the mesh, or there are too many.
 pub(super) fn quantise(
-    mesh: &TriMesh,
-    attributes: &Attributes,
+    Input { mesh, attributes, options }: Input,
     surface: Elements,
     loose: Elements,
-    options: &EncodeOptions,
 ) -> Result<Quantised, EncodeError> {
     let mut quantised =
         Quantised { material_libraries: attributes.material_libraries.clone(), ..Quantised::default() };

@@ -98,15 +98,6 @@ fn settings(options: &EncodeOptions, attempt: Attempt) -> Settings {
     let EncodeOptions { descriptor, window, growth, partition, optimize, .. } = *options;
     let Attempt { levels, max_valence } = attempt;
     let is_hasty = options.effort < EncodeOptions::LOW_EFFORT;
-    Settings {
-        descriptor,
-        window,
-        growth,
-        levels,
-        partition,
-        optimize,
-        is_hasty,
-        in_order: true,
-        max_valence,
-    }
+    let usual = Settings::new(descriptor, window, growth, levels, partition);
+    Settings { optimize, is_hasty, in_order: true, max_valence, ..usual }
 }

@@ -1,7 +1,7 @@
 //! Bytes for what a decoder has to do: a mesh may be coded in fewer bytes than the work of it is allowed to take
 //! (`format/SPEC.md`, section 10). Zeros make up for that.
 
-use super::written_pass::WrittenPass;
+use super::frame::WrittenPass;
 use crate::decoder::{TrailingKind, forecast};
 use crate::passes::attribute::Declarations;
 use crate::passes::cost::{self, Counts, Ledger};
@@ -23,8 +23,8 @@ pub(super) fn pad(
         ledger.cost += cost::pass(&pass.row, counts, channels);
         counts = counts.after(&pass.row);
         ledger.cost += pass.glue.as_ref().map_or(0, |_| cost::glue(counts));
-        let beside = values.get(i).map_or(0, Vec::len) + pass.glue.as_ref().map_or(0, Vec::len);
-        ledger.bytes += (pass.payload.len() + beside) as u64;
+        let companions = values.get(i).map_or(0, Vec::len) + pass.glue.as_ref().map_or(0, Vec::len);
+        ledger.bytes += (pass.payload.len() + companions) as u64;
         if i + 1 == num_passes {
             ledger.cost += cost::loose(loose);
             for (kind, payload) in trailing {

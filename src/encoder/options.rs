@@ -5,6 +5,7 @@ use crate::decoder::StreamInfo;
 use crate::descriptors::{Descriptor, FeatureChoice, Window};
 use crate::error::EncodeError;
 use crate::mesh::repair::RepairReport;
+use crate::mesh::{Attributes, TriMesh};
 use crate::simplification::hierarchy::MAX_LEVELS;
 use crate::simplification::partition::Partition;
 use crate::simplification::vertex_selection::Optimize;
@@ -165,6 +166,14 @@ impl EncodeOptions {
         }
         Ok(())
     }
+}
+
+/// What is encoded, and how.
+#[derive(Clone, Copy)]
+pub(super) struct Input<'a> {
+    pub(super) mesh: &'a TriMesh,
+    pub(super) attributes: &'a Attributes,
+    pub(super) options: &'a EncodeOptions,
 }
 
 /// A way down that is tried.

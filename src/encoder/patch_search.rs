@@ -1,6 +1,7 @@
 //! Which patches restore a level's vertices, found before the level below is coded: the walk looks at no
 //! model of coordinates, and the encoder knows where the vertices will be.
 
+use super::numbering::Numbering;
 use super::payload::expect_sound;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::{BitCoder, RangeEncoder};
@@ -11,14 +12,6 @@ use crate::passes::connectivity::{self, ConnectivityModels, ConnectivityTarget, 
 use crate::passes::patch::Patches;
 use crate::simplification::LevelRecord;
 use std::collections::HashMap;
-
-/// How the decoder's numbering maps to that of the full surface.
-pub(super) struct Names {
-    /// Vertex of the full surface that each vertex is.
-    pub(super) vertex_source: Vec<u32>,
-    /// Slot of the full surface that each triangle has.
-    pub(super) face_source: Vec<u32>,
-}
 
 /// The patches of a level, coded.
 pub(super) struct Found {
@@ -60,21 +53,22 @@ impl PatchSearch {
         &mut self,
         cells: &[[i32; 3]],
         hidden: u32,
-        names: &Names,
+        numbering: &Numbering,
         record: &LevelRecord,
     ) -> Found {
         let mut mesh = std::mem::take(&mut self.mesh);
         mesh.positions.clear();
-        mesh.positions.extend(names.vertex_source.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)));
-        let found = self.find(&mesh, names, record);
+        mesh.positions
+            .extend(numbering.vertex_source.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)));
+        let found = self.find(&mesh, numbering, record);
         self.mesh = mesh;
         found
     }
 
-    /// The patches that restore the vertices of `record`.
-    pub(super) fn find(&mut self, mesh: &GridMesh, names: &Names, record: &LevelRecord) -> Found {
+    /// The patches that bring back the vertices of `record`.
+    pub(super) fn find(&mut self, mesh: &GridMesh, numbering: &Numbering, record: &LevelRecord) -> Found {
         let mut coder = RangeEncoder::new();
-        let (patches, odd) = self.find_with(&mut coder, mesh, names, record);
+        let (patches, odd) = self.find_with(&mut coder, mesh, numbering, record);
         Found { coder, patches, odd }
     }
 
@@ -83,10 +77,10 @@ impl PatchSearch {
         &mut self,
         coder: &mut B,
         mesh: &GridMesh,
-        names: &Names,
+        numbering: &Numbering,
         record: &LevelRecord,
     ) -> (Patches, Vec<u32>) {
-        let target = self.target(&mesh.surface, names, record);
+        let target = self.target(&mesh.surface, numbering, record);
         let patches = connectivity::code(coder, &mut self.models, mesh, record.len(), Some(&target));
         let patches = expect_sound(patches);
         let odd = (0..patches.len()).map(|j| odd_of(&target, &patches, j)).collect();
@@ -94,7 +88,12 @@ impl PatchSearch {
     }
 
     /// Translates a record into the decoder's numbering.
-    fn target(&mut self, surface: &Surface, names: &Names, record: &LevelRecord) -> ConnectivityTarget {
+    fn target(
+        &mut self,
+        surface: &Surface,
+        numbering: &Numbering,
+        record: &LevelRecord,
+    ) -> ConnectivityTarget {
         let mut open: HashMap<(u32, u32), u32> = HashMap::new();
         for (odd, removed) in record.iter().enumerate() {
             removed.patch().iter().for_each(|&slot| self.patch_of_slot[slot as usize] = odd as u32);
@@ -103,7 +102,7 @@ impl PatchSearch {
                 open.insert((last, removed.ring[0]), odd as u32);
             }
         }
-        let patch_of_face = names.face_source.iter().map(|&s| self.patch_of_slot[s as usize]).collect();
+        let patch_of_face = numbering.face_source.iter().map(|&s| self.patch_of_slot[s as usize]).collect();
         record
             .iter()
             .for_each(|r| r.patch().iter().for_each(|&s| self.patch_of_slot[s as usize] = NOT_IN_PATCH));
@@ -112,7 +111,7 @@ impl PatchSearch {
         if !open.is_empty() {
             for corner in (0..surface.opposite.len() as u32).filter(|&c| surface.across(c) == NO_CORNER) {
                 let [from, to] =
-                    [next(corner), prev(corner)].map(|c| names.vertex_source[surface.vertex(c) as usize]);
+                    [next(corner), prev(corner)].map(|c| numbering.vertex_source[surface.vertex(c) as usize]);
                 if let Some(&odd) = open.get(&(from, to)) {
                     let is_ear = record.get(odd as usize).patch().is_empty();
                     let map = if is_ear { &mut target.ear_at } else { &mut target.patch_open_at };

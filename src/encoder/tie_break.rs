@@ -2,9 +2,9 @@
 //! decoder will have them.
 
 use super::attributes::{Elements, quantise};
-use super::options::EncodeOptions;
+use super::options::Input;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, Attributes, Domain, NO_ENTRY, TriMesh, Values};
+use crate::mesh::{Attribute, Domain, NO_ENTRY, Values};
 use crate::passes::attribute::Coding;
 
 /// A number for each element of a mesh; elements that no stream keeps have any.
@@ -16,13 +16,8 @@ pub(super) struct Signatures {
 
 impl Signatures {
     /// `None` if there is nothing to look at. `surface` and `loose`: what a stream keeps, in any order.
-    pub(super) fn new(
-        mesh: &TriMesh,
-        attributes: &Attributes,
-        surface: Elements,
-        loose: Elements,
-        options: &EncodeOptions,
-    ) -> Option<Self> {
+    pub(super) fn new(input: Input, surface: Elements, loose: Elements) -> Option<Self> {
+        let Input { mesh, attributes, options } = input;
         if attributes.list.is_empty() && !options.lossless {
             return None;
         }
@@ -44,7 +39,7 @@ impl Signatures {
             return Some(all);
         }
         // Attributes that do not fit are an error later.
-        let quantised = quantise(mesh, attributes, surface, loose, options).ok()?;
+        let quantised = quantise(input, surface, loose).ok()?;
         for (one, attribute) in quantised.list.iter().zip(&attributes.list) {
             let n = one.declaration.num_channels();
             let hash = |row: u32| {

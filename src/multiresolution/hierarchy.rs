@@ -12,7 +12,6 @@ use crate::mesh::{Surface, TriMesh};
 use crate::simplification::hierarchy::{Descent, Settings};
 use crate::simplification::level::Level;
 use crate::simplification::partition::Geometry;
-use crate::simplification::vertex_selection::Optimize;
 use bitvec::vec::BitVec;
 
 /// Triangles of M^0 … M^L. M^k has the vertices below its number.
@@ -69,18 +68,7 @@ impl Hierarchy {
         let geometry = Geometry { grid: &model.cells, positions: &model.positions };
         let num_vertices = surface.corner_of.len();
         let Options { descriptor, window, growth, levels, partition, .. } = *options;
-        let optimize = Optimize::default();
-        let settings = Settings {
-            descriptor,
-            window,
-            growth,
-            levels,
-            partition,
-            optimize,
-            is_hasty: false,
-            in_order: false,
-            max_valence: None,
-        };
+        let settings = Settings::new(descriptor, window, growth, levels, partition);
         let none: BitVec = BitVec::repeat(false, num_vertices);
         let mut descent = Descent::new(surface, geometry, settings, none).with_mean_edge(mean_edge);
         // Finest first, in the numbering of the surface.

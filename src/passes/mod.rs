@@ -22,7 +22,6 @@ pub(crate) mod isolated_and_degenerate;
 pub(crate) mod numbers;
 pub(crate) mod order;
 pub(crate) mod patch;
-mod polygon;
 pub(crate) mod refine;
 pub(crate) mod stitching;
 pub(crate) mod values;

@@ -6,6 +6,17 @@ use super::retriangulate::{HoleFiller, Prospect};
 use super::{Star, SurfaceEditor};
 use rayon::prelude::*;
 
+/// A level before anything is removed from it.
+#[derive(Clone, Copy)]
+pub(crate) struct Evaluator<'a> {
+    pub(crate) surface: &'a SurfaceEditor,
+    pub(crate) grid: &'a [[i32; 3]],
+    pub(crate) positions: &'a [[f64; 3]],
+    pub(crate) memory: &'a ErrorMemory<'a>,
+    /// Whether the fans that may close a hole are looked at.
+    pub(crate) sees_fans: bool,
+}
+
 /// Vertices that one thread looks at.
 const GROUP: usize = 1 << 8;
 
@@ -36,18 +47,11 @@ pub(crate) struct Ahead {
 }
 
 impl CollapseCosts {
-    /// Looks at `vertices`, at the fans that may close their holes only if `see_fans`.
-    pub(crate) fn new(
-        surface: &SurfaceEditor,
-        grid: &[[i32; 3]],
-        positions: &[[f64; 3]],
-        memory: &ErrorMemory,
-        vertices: &[u32],
-        see_fans: bool,
-    ) -> Self {
-        let mut places = vec![0; surface.surface.corner_of.len()];
+    /// Looks at `vertices`.
+    pub(crate) fn new(evaluator: Evaluator, vertices: &[u32]) -> Self {
+        let mut places = vec![0; evaluator.surface.surface.corner_of.len()];
         vertices.iter().zip(0..).for_each(|(&v, place)| places[v as usize] = place);
-        let look = |vertices: &[u32]| Group::new(surface, grid, positions, memory, vertices, see_fans);
+        let look = |vertices: &[u32]| Group::new(evaluator, vertices);
         Self { places, groups: vertices.par_chunks(GROUP).map(look).collect() }
     }
 
@@ -74,14 +78,8 @@ impl CollapseCosts {
 }
 
 impl Group {
-    fn new(
-        surface: &SurfaceEditor,
-        grid: &[[i32; 3]],
-        positions: &[[f64; 3]],
-        memory: &ErrorMemory,
-        vertices: &[u32],
-        see_fans: bool,
-    ) -> Self {
+    fn new(evaluator: Evaluator, vertices: &[u32]) -> Self {
+        let Evaluator { surface, grid, positions, memory, sees_fans } = evaluator;
         let mut group = Self::default();
         group.stars.reserve_exact(vertices.len());
         let mut star = Star::default();
@@ -91,7 +89,7 @@ impl Group {
             let ((_, first), is_sole) = memory.heir(&star);
             let heir = is_sole.then_some(first);
             let first = star.ring.iter().position(|&v| v == first).unwrap_or(0);
-            let prospect = if see_fans { filler.foresee(&star, grid, positions, first) } else { None };
+            let prospect = if sees_fans { filler.foresee(&star, grid, positions, first) } else { None };
             let (corners, ring) = (group.corners.len() as u32, group.rings.len() as u32);
             group.stars.push(Ahead { corners, ring, heir, prospect });
             group.corners.extend_from_slice(&star.corners);

@@ -37,6 +37,21 @@ pub(crate) struct Settings {
     pub(crate) max_valence: Option<u32>,
 }
 
+impl Settings {
+    /// Of the usual speed and aim, in the order of the mesh.
+    pub(crate) fn new(
+        descriptor: Descriptor,
+        window: Window,
+        growth: f64,
+        levels: Option<u32>,
+        partition: Partition,
+    ) -> Self {
+        let optimize = Optimize::default();
+        let (is_hasty, in_order, max_valence) = (false, false, None);
+        Self { descriptor, window, growth, levels, partition, optimize, is_hasty, in_order, max_valence }
+    }
+}
+
 /// A surface on its way down. Yields each level with what was removed from it, finest first; what stays
 /// in the end is the base.
 pub(crate) struct Descent<'a> {

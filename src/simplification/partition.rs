@@ -4,7 +4,7 @@
 use super::bucket_queue::{ClassQueue, PackingClasses};
 use super::canonical::{Anchors, patch_order};
 use super::collapse::CollapseTest;
-use super::collapse_cost::CollapseCosts;
+use super::collapse_cost::{CollapseCosts, Evaluator};
 use super::level::Level;
 use super::quadrics::ErrorMemory;
 use super::retriangulate::HoleFiller;
@@ -155,14 +155,13 @@ fn remove_as_decoded(
     seams: &mut Seams,
 ) -> LevelRecord {
     let Geometry { grid, positions } = geometry;
-    let see_fans = tolerance < f64::INFINITY && seams.is_empty();
+    let sees_fans = tolerance < f64::INFINITY && seams.is_empty();
+    let evaluator = Evaluator { surface, grid, positions, memory, sees_fans };
     let mut odd: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
     chosen.iter().for_each(|&v| odd.set(v as usize, true));
     chosen.sort_unstable();
-    let (order, outlook) = rayon::join(
-        || patch_order(surface, faces, &odd, anchors),
-        || CollapseCosts::new(surface, grid, positions, memory, &chosen, see_fans),
-    );
+    let (order, outlook) =
+        rayon::join(|| patch_order(surface, faces, &odd, anchors), || CollapseCosts::new(evaluator, &chosen));
     let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;
     let (ears, patches): (Vec<u32>, Vec<u32>) = order.into_iter().rev().partition(is_ear);
     let mut record = LevelRecord::default();

@@ -31,13 +31,20 @@ pub(super) struct Around {
 }
 
 impl Around {
-    pub(super) fn clear(&mut self) {
+    fn clear(&mut self) {
         self.ring.clear();
         self.tips.clear();
         self.triangles.clear();
         self.num_missing = 0;
         self.normal = Lanes::ZERO;
         self.is_closed = false;
+    }
+
+    /// Forgets all but the face that the row belongs to.
+    pub(super) fn begin_at(&mut self, mesh: &GridMesh, face: u32) {
+        self.clear();
+        let [a, b, c] = mesh.surface.triangles[face as usize].map(|v| mesh.positions[v as usize]);
+        self.normal = Lanes::between(a, b).cross(Lanes::between(a, c));
     }
 
     /// Adds a neighbour unless it has no value.
