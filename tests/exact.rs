@@ -179,7 +179,7 @@ fn coarse_levels_have_no_cracks() {
 }
 
 #[test]
-fn many_sheets_are_glued_as_they_come() {
+fn many_sheets_are_stitched_as_they_come() {
     // Every other face of a grid turned over: hardly a vertex that is not cut.
     let (positions, mut triangles) = noisy(grid(25, 25, |x, y| 0.1 * x * y), 1, 0.02).into_parts();
     triangles.iter_mut().step_by(2).for_each(|t| t.swap(0, 1));

@@ -60,7 +60,7 @@ impl From<LevelMesh<'_>> for Copied {
 
 /// Bytes up to the end of a pass alone.
 fn end_of_pass(pass: &PassInfo) -> u64 {
-    pass.end - pass.glue_bytes - pass.attribute_bytes
+    pass.end - pass.stitching_bytes - pass.attribute_bytes
 }
 
 /// Update and mesh after every pass, one at a time.
@@ -120,7 +120,7 @@ fn every_prefix_is_the_mesh_of_its_last_complete_pass_and_more_in_a_preview() {
     }
 }
 
-/// A preview is a surface, unless it is glued, with vertices of the next mesh only: those it shares with the last complete
+/// A preview is a surface, unless it is stitched, with vertices of the next mesh only: those it shares with the last complete
 /// one where they are or one bit finer, and new ones in place.
 fn assert_lies_between(preview: &TriMesh, last: LevelMesh, next: &Copied, what: &str) {
     let joined = last.to_tri_mesh();
@@ -224,10 +224,11 @@ fn work_in_slices_gives_the_same_passes_and_shows_only_those() {
         let mut whole = Decoder::new(Limits::default());
         whole.push(&stream).unwrap();
         let total = whole.work_done();
-        // Glue is taken in one go.
+        // Stitching is taken in one go.
         let passes = whole.info().unwrap().passes().iter();
-        let of_glue = passes.filter(|pass| pass.glue_bytes > 0).map(|pass| 4 * u64::from(pass.vertices));
-        let largest_item = LARGEST_ITEM + of_glue.max().unwrap_or(0);
+        let of_stitching =
+            passes.filter(|pass| pass.stitching_bytes > 0).map(|pass| 4 * u64::from(pass.vertices));
+        let largest_item = LARGEST_ITEM + of_stitching.max().unwrap_or(0);
         for work in [0, 1, 7, 50, 1000, u32::MAX] {
             let mut decoder = Decoder::new(Limits::default());
             let mut pieces = stream.chunks(30);

@@ -157,7 +157,7 @@ fn hostile_announcements_are_refused_or_meshes() {
         check(&chunks::join(&damaged), "announced")
     };
     let malformed = |result| matches!(result, Err(DecodeError::Malformed { .. }));
-    assert!(malformed(with(&[1, 200, 1, 5])), "glue of a pass that is not there");
+    assert!(malformed(with(&[1, 200, 1, 5])), "stitching of a pass that is not there");
     assert!(malformed(with(&[0, b'S', 5])), "a critical chunk behind the passes");
     assert!(malformed(with(&[0, b'x', 5, b'x', 5])), "a chunk twice");
     let mut twice = chunks.clone();
@@ -173,7 +173,7 @@ fn missing_and_misplaced_chunks_are_noticed() {
         without.remove(i);
         let result = check(&chunks::join(&without), "missing");
         let kind = char::from(chunk.kind);
-        // Another pass, or glue of another length, may stand in its place.
+        // Another pass, or stitching of another length, may stand in its place.
         let is_noticed = match result {
             Ok(is_complete) => !is_complete,
             Err(DecodeError::Malformed { .. }) => kind == 'g',

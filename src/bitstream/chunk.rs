@@ -41,7 +41,7 @@ pub(crate) mod kind {
     /// Announces the chunks below.
     pub(crate) const ANNOUNCED: u8 = b't';
     /// Vertices that were cut apart.
-    pub(crate) const GLUE: u8 = b'g';
+    pub(crate) const STITCHING: u8 = b'g';
     /// Isolated vertices and degenerate faces.
     pub(crate) const LOOSE: u8 = b'i';
     /// The meshes of a scene, and how materials look.
@@ -56,7 +56,7 @@ pub(crate) mod kind {
 
     /// True if a known kind belongs directly before or after a pass.
     pub(crate) fn is_known_elsewhere(kind: u8) -> bool {
-        matches!(kind, PROVENANCE | COMPENSATION | SCENE | DECLARATIONS | ATTRIBUTES | ANNOUNCED | GLUE)
+        matches!(kind, PROVENANCE | COMPENSATION | SCENE | DECLARATIONS | ATTRIBUTES | ANNOUNCED | STITCHING)
     }
 
     /// True if the chunk is a pass: the table of passes knows its length.

@@ -25,7 +25,7 @@ fn stage(kind: u8) -> Option<u8> {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ChunkIndex {
     /// Passes that a stitching chunk follows, ascending, and the bytes of its payload.
-    pub(crate) glue: Vec<(u32, u32)>,
+    pub(crate) stitching: Vec<(u32, u32)>,
     /// Kinds of the chunks after the last pass, in order, and the bytes of their payloads.
     pub(crate) trailing: Vec<(u8, u32)>,
 }
@@ -38,10 +38,10 @@ impl ChunkIndex {
         let count = reader.varint().filter(|&count| count <= MAX_PASSES + 1)?;
         for _ in 0..count {
             let pass = reader.varint()?;
-            if announced.glue.last().is_some_and(|&(last, _)| pass <= last) {
+            if announced.stitching.last().is_some_and(|&(last, _)| pass <= last) {
                 return None;
             }
-            announced.glue.push((pass, reader.varint()?));
+            announced.stitching.push((pass, reader.varint()?));
         }
         while !reader.is_empty() {
             let (kind, bytes) = (reader.u8()?, reader.varint()?);
@@ -60,8 +60,8 @@ impl ChunkIndex {
     #[cfg(any(feature = "encoder", test))]
     pub(crate) fn write(&self) -> Vec<u8> {
         let mut payload = Vec::new();
-        write_varint(&mut payload, self.glue.len() as u32);
-        for &(pass, bytes) in &self.glue {
+        write_varint(&mut payload, self.stitching.len() as u32);
+        for &(pass, bytes) in &self.stitching {
             write_varint(&mut payload, pass);
             write_varint(&mut payload, bytes);
         }
@@ -74,7 +74,7 @@ impl ChunkIndex {
 
     #[cfg(feature = "encoder")]
     pub(crate) fn is_empty(&self) -> bool {
-        self.glue.is_empty() && self.trailing.is_empty()
+        self.stitching.is_empty() && self.trailing.is_empty()
     }
 }
 
@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn announcements_return_and_lies_are_refused() {
         let announced = ChunkIndex {
-            glue: vec![(0, 300), (4, 1)],
+            stitching: vec![(0, 300), (4, 1)],
             trailing: vec![(kind::LOOSE, 7), (kind::EXACT, 1 << 20), (b'z', 0)],
         };
         let payload = announced.write();

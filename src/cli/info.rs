@@ -107,7 +107,9 @@ fn step(info: &StreamInfo) -> f64 {
 }
 
 fn header_bytes(info: &StreamInfo) -> u64 {
-    info.passes().first().map_or(0, |base| base.end - base.bytes - base.glue_bytes - base.attribute_bytes)
+    info.passes()
+        .first()
+        .map_or(0, |base| base.end - base.bytes - base.stitching_bytes - base.attribute_bytes)
 }
 
 fn passes_present(info: &StreamInfo, present: u64) -> usize {

@@ -31,7 +31,7 @@ pub fn to_json(info: &StreamInfo, present: u64) -> Value {
             "odd_share": odd_share(info, i),
             "bytes": pass.bytes,
             "attribute_bytes": pass.attribute_bytes,
-            "glue_bytes": pass.glue_bytes,
+            "stitching_bytes": pass.stitching_bytes,
             "bits_per_vertex": bits_per_vertex(pass.bytes, info),
             "end": pass.end,
             "present": pass.end <= present,
@@ -107,14 +107,14 @@ pub fn print(mut out: impl Write, info: &StreamInfo, present: u64) -> io::Result
             pass.bytes,
             bits_per_vertex(pass.bytes, info),
         )?;
-        if pass.glue_bytes > 0 {
+        if pass.stitching_bytes > 0 {
             let end = pass.end;
             writeln!(
                 out,
                 "      {:<48} {:>10} {:>8.3} {end:>11}{missing}",
-                "glue",
-                pass.glue_bytes,
-                bits_per_vertex(pass.glue_bytes, info)
+                "stitching",
+                pass.stitching_bytes,
+                bits_per_vertex(pass.stitching_bytes, info)
             )?;
         }
     }

@@ -12,11 +12,11 @@ use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::surface::turns;
 use crate::mesh::{Attribute, Attributes, Domain, NO_ENTRY, TriMesh, has_three_vertices};
-use crate::passes::attribute::{Declarations, Rows};
+use crate::passes::attribute::{Declarations, Entries};
 use crate::passes::cost::{self, Counts};
 use crate::passes::isolated_and_degenerate::{self, Loose};
 use crate::passes::order::{self, Order};
-use crate::passes::stitching::{self, GlueModels};
+use crate::passes::stitching::{self, StitchingModels};
 use crate::passes::values::{self, Elements, Told};
 use crate::passes::{GridMesh, Malformed, exact};
 
@@ -25,7 +25,7 @@ use crate::passes::{GridMesh, Malformed, exact};
 pub(crate) struct Extras {
     /// For each vertex the first that is the same; those beyond the end are separate vertices.
     pub(crate) roots: Vec<u32>,
-    pub(crate) glue: GlueModels,
+    pub(crate) stitching: StitchingModels,
     pub(crate) loose: Option<Loose>,
     pub(crate) positions: Option<Vec<[f64; 3]>>,
     /// What the chunk of exact values says about each attribute.
@@ -156,15 +156,19 @@ impl Extras {
         }
     }
 
-    /// What has values of an attribute that has these `rows` on the surface.
+    /// What has values of an attribute that has these `entries` on the surface.
     pub(crate) fn elements<'a>(
         &self,
         joined: &Joined,
         triangles: &[[u32; 3]],
-        rows: &'a Rows,
+        entries: &'a Entries,
         domain: Domain,
     ) -> Elements<'a> {
-        Elements { rows, on_surface: joined.elements(triangles, domain), num_loose: self.num_loose(domain) }
+        Elements {
+            entries,
+            on_surface: joined.elements(triangles, domain),
+            num_loose: self.num_loose(domain),
+        }
     }
 
     /// The attributes of the assembled mesh, from those of the surface. Isolated vertices and degenerate
@@ -194,40 +198,42 @@ impl Extras {
         told: Option<&Told>,
         attribute: &mut Attribute,
     ) {
-        let mut rows: Vec<u32> = match told {
+        let mut entries: Vec<u32> = match told {
             Some(told) if told.is_exact => {
                 attribute.values = told.values.clone();
                 told.of.clone()
             }
             _ => {
-                let row = |[element, _]: [u32; 2]| attribute.entry(element as usize);
+                let entry = |[element, _]: [u32; 2]| attribute.entry(element as usize);
                 let elements = joined.elements(triangles, attribute.domain).into_iter();
-                elements.map(|element| row(element).map_or(NO_ENTRY, |row| row as u32)).collect()
+                elements.map(|element| entry(element).map_or(NO_ENTRY, |entry| entry as u32)).collect()
             }
         };
         if let Some(told) = told.filter(|told| !told.is_exact) {
             let first = attribute.num_entries() as u32;
             attribute.values.append(told.values.clone());
-            rows.extend(told.of.iter().map(|&row| if row == NO_ENTRY { NO_ENTRY } else { first + row }));
+            entries.extend(
+                told.of.iter().map(|&entry| if entry == NO_ENTRY { NO_ENTRY } else { first + entry }),
+            );
         }
         if told.is_none() {
-            rows.extend(std::iter::repeat_n(NO_ENTRY, self.num_loose(attribute.domain)));
+            entries.extend(std::iter::repeat_n(NO_ENTRY, self.num_loose(attribute.domain)));
         }
         if let Some(order) = &self.order {
-            rows = match attribute.domain {
-                Domain::Vertex => order.vertices.iter().map(|&v| rows[v as usize]).collect(),
+            entries = match attribute.domain {
+                Domain::Vertex => order.vertices.iter().map(|&v| entries[v as usize]).collect(),
                 Domain::Corner => {
-                    order.corners.iter().flat_map(|&c| turns(c).map(|c| rows[c as usize])).collect()
+                    order.corners.iter().flat_map(|&c| turns(c).map(|c| entries[c as usize])).collect()
                 }
-                Domain::Triangle => order.corners.iter().map(|&c| rows[(c / 3) as usize]).collect(),
+                Domain::Triangle => order.corners.iter().map(|&c| entries[(c / 3) as usize]).collect(),
             };
         }
-        attribute.indices = Some(rows);
+        attribute.indices = Some(entries);
     }
 }
 
 /// Bytes of memory that a vertex and a face may take for each kind of chunk, working space included.
-const GLUE_PER_VERTEX: u64 = 28;
+const STITCHING_PER_VERTEX: u64 = 28;
 const LOOSE_EACH: u64 = 24;
 const EXACT_PER_VERTEX: u64 = 240;
 /// Of an element, and of each component of its value.
@@ -261,7 +267,7 @@ fn units_on_surface(kind: u8, mesh: &GridMesh, declared: Option<&Declarations>) 
     let surface = Counts { vertices, triangles: faces };
     let none = Declarations::default();
     match kind {
-        kind::GLUE => cost::glue(surface),
+        kind::STITCHING => cost::stitching(surface),
         _ => forecast::of_trailing(TrailingKind::new(kind), surface, declared.unwrap_or(&none)),
     }
 }
@@ -280,7 +286,7 @@ impl Extras {
         let declared = attributes.map(|attributes| &attributes.declarations);
         let units = units_on_surface(kind, chunk.mesh, declared);
         match (kind, attributes) {
-            (kind::GLUE, _) => self.read_glue(chunk)?,
+            (kind::STITCHING, _) => self.read_stitching(chunk)?,
             (kind::LOOSE, _) => self.read_loose(chunk)?,
             (kind::EXACT, _) => self.read_exact(chunk)?,
             (kind::VALUES, Some(attributes)) => self.read_values(chunk, attributes)?,
@@ -288,7 +294,7 @@ impl Extras {
             (kind::ORDER, _) => self.read_order(chunk)?,
             _ => return Ok(units),
         }
-        if kind != kind::GLUE && !self.fit(chunk.mesh) {
+        if kind != kind::STITCHING && !self.fit(chunk.mesh) {
             return Err(Malformed("a chunk that does not fit the mesh").into());
         }
         let loose = self.loose.as_ref().filter(|_| kind == kind::LOOSE);
@@ -296,11 +302,11 @@ impl Extras {
     }
 
     /// Stitches the vertices added since the last time.
-    fn read_glue(&mut self, chunk: NewChunk) -> Result<(), Refused> {
-        chunk.check_memory(GLUE_PER_VERTEX * chunk.mesh.positions.len() as u64)?;
+    fn read_stitching(&mut self, chunk: NewChunk) -> Result<(), Refused> {
+        chunk.check_memory(STITCHING_PER_VERTEX * chunk.mesh.positions.len() as u64)?;
         let known = self.roots.len();
         let mut coder = RangeDecoder::new(chunk.payload);
-        let result = stitching::code(&mut coder, &mut self.glue, chunk.mesh, &mut self.roots, None);
+        let result = stitching::code(&mut coder, &mut self.stitching, chunk.mesh, &mut self.roots, None);
         if result.is_err() {
             self.roots.truncate(known);
         }
@@ -346,7 +352,7 @@ impl Extras {
         let (ladders, used) =
             values::read_head(payload, list).ok_or(Malformed("the kinds of exact values"))?;
         let joined = self.joined(mesh.positions.len());
-        let elements = |k: usize, rows| self.elements(&joined, triangles, rows, list[k].domain);
+        let elements = |k: usize, entries| self.elements(&joined, triangles, entries, list[k].domain);
         let memory = |k: usize| {
             let on_surface = match list[k].domain {
                 Domain::Vertex => mesh.positions.len(),
@@ -359,8 +365,8 @@ impl Extras {
         chunk.check_memory((0..list.len()).map(memory).sum())?;
         let mut coder = RangeDecoder::new(&payload[used..]);
         let mut told = Vec::with_capacity(list.len());
-        for (k, rows) in attributes.rows().enumerate() {
-            let elements = elements(k, rows);
+        for (k, entries) in attributes.entries().enumerate() {
+            let elements = elements(k, entries);
             told.push(values::code(&mut coder, &list[k], &ladders[k], &elements, None)?);
         }
         self.values = told;

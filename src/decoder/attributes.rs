@@ -6,7 +6,7 @@ use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeState};
 use crate::mesh::{Attribute, Attributes, Domain, NO_ENTRY, Values};
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
-use crate::passes::attribute::{Brought, Coding, Declaration, Declarations, Desk, Layer, Rows};
+use crate::passes::attribute::{Brought, Coding, Declaration, Declarations, Desk, Entries, Layer};
 use crate::passes::patch::Patches;
 use crate::passes::work_budget::WorkBudget;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
@@ -48,9 +48,9 @@ impl AttributeDecoder {
         &self.bytes
     }
 
-    /// The rows of each attribute on the surface.
-    pub(super) fn rows(&self) -> impl Iterator<Item = &Rows> {
-        self.state.layers.iter().map(|layer| &layer.rows)
+    /// The entries of each attribute on the surface.
+    pub(super) fn entries(&self) -> impl Iterator<Item = &Entries> {
+        self.state.layers.iter().map(|layer| &layer.entries)
     }
 
     /// A pass has brought vertices from `first` on; `patches` if it is a split.
@@ -108,12 +108,12 @@ impl AttributeDecoder {
         self.collect(&ahead.guessed(mesh, &[]).as_ref().unwrap_or(&self.state).layers)
     }
 
-    /// Checksum of the rows (`format/SPEC.md`, section 9).
+    /// Checksum of the entries (`format/SPEC.md`, section 9).
     pub(super) fn checksum(&self) -> u32 {
         let mut hash = crc32fast::Hasher::new();
         for layer in &self.state.layers {
-            for &row in &layer.rows.of {
-                let channels = if row == NO_ENTRY { &[-1][..] } else { layer.rows.get(row) };
+            for &entry in &layer.entries.of {
+                let channels = if entry == NO_ENTRY { &[-1][..] } else { layer.entries.get(entry) };
                 channels.iter().for_each(|c| hash.update(&c.to_le_bytes()));
             }
         }
@@ -164,38 +164,38 @@ impl State {
 
 /// One attribute as callers know it.
 fn collect(declaration: &Declaration, layer: &Layer) -> Attribute {
-    let rows = &layer.rows;
+    let entries = &layer.entries;
     let mut values = declaration.scalar.map_or(Values::Names(Vec::new()), Values::new);
-    let mut indices = Vec::with_capacity(rows.of.len());
-    if let Coding::Table { rows: table } = &declaration.coding {
+    let mut indices = Vec::with_capacity(entries.of.len());
+    if let Coding::Table { entries: table } = &declaration.coding {
         values = table.clone();
-        let symbol = |&row: &u32| if row == NO_ENTRY { NO_ENTRY } else { rows.get(row)[0] as u32 };
-        indices.extend(rows.of.iter().map(symbol));
+        let symbol = |&entry: &u32| if entry == NO_ENTRY { NO_ENTRY } else { entries.get(entry)[0] as u32 };
+        indices.extend(entries.of.iter().map(symbol));
     } else {
-        let mut place = vec![NO_ENTRY; if declaration.domain == Domain::Corner { rows.len() } else { 0 }];
+        let mut place = vec![NO_ENTRY; if declaration.domain == Domain::Corner { entries.len() } else { 0 }];
         let mut count = 0;
-        for &row in &rows.of {
-            let known = place.get(row as usize).copied().unwrap_or(NO_ENTRY);
-            let index = match (row, known) {
+        for &entry in &entries.of {
+            let known = place.get(entry as usize).copied().unwrap_or(NO_ENTRY);
+            let index = match (entry, known) {
                 (NO_ENTRY, _) => NO_ENTRY,
                 (_, NO_ENTRY) => {
-                    declaration.restore(rows.get(row), &mut values);
+                    declaration.restore(entries.get(entry), &mut values);
                     count += 1;
                     count - 1
                 }
                 _ => known,
             };
-            if let Some(place) = place.get_mut(row as usize) {
+            if let Some(place) = place.get_mut(entry as usize) {
                 *place = index;
             }
             indices.push(index);
         }
     }
-    let has_own_rows = indices.iter().zip(0..).all(|(&index, k)| index == k);
-    let has_own_rows = has_own_rows && values.len() == indices.len() * declaration.num_components;
+    let has_own_entries = indices.iter().zip(0..).all(|(&index, k)| index == k);
+    let has_own_entries = has_own_entries && values.len() == indices.len() * declaration.num_components;
     Attribute {
         is_normalized: declaration.is_normalized,
-        indices: (!has_own_rows).then_some(indices),
+        indices: (!has_own_entries).then_some(indices),
         ..Attribute::new(
             declaration.name.clone(),
             declaration.semantic,
@@ -236,12 +236,12 @@ pub(super) fn bytes_of_models(declarations: &Declarations, mixing: Mixing) -> u6
 pub(super) fn memory_for(declarations: &Declarations, pass: &PassInfo, mixing: Mixing) -> u64 {
     let (vertices, faces) = (u64::from(pass.vertices), u64::from(pass.triangles));
     let of_one = |declaration: &Declaration| {
-        let row = 4 * declaration.num_channels() as u64 + 1;
+        let entry = 4 * declaration.num_channels() as u64 + 1;
         match declaration.domain {
-            Domain::Vertex => vertices * (row + 4),
-            // A pass may replace as many rows as there are.
-            Domain::Corner => faces * 3 * (2 * row + 4),
-            Domain::Triangle => faces * (2 * row + 4),
+            Domain::Vertex => vertices * (entry + 4),
+            // A pass may replace as many entries as there are.
+            Domain::Corner => faces * 3 * (2 * entry + 4),
+            Domain::Triangle => faces * (2 * entry + 4),
         }
     };
     bytes_of_models(declarations, mixing) + declarations.list.iter().map(of_one).sum::<u64>()

@@ -22,7 +22,7 @@ pub(super) fn check(info: &StreamInfo, declared: &Declarations, limits: &Limits)
     for pass in &info.passes {
         work += cost::pass(&pass.row, counts, channels);
         counts = counts.after(&pass.row);
-        work += if pass.glue_bytes > 0 { cost::glue(counts) } else { 0 };
+        work += if pass.stitching_bytes > 0 { cost::stitching(counts) } else { 0 };
         Limits::check("work", work, allowed(limits, pass.end))?;
     }
     for trailing in info.trailing.iter().filter(|_| ASSETS) {

@@ -34,11 +34,11 @@ pub struct AttributeInfo {
     pub semantic: Semantic,
     /// What has a value.
     pub domain: Domain,
-    /// Values of a row.
+    /// Components of an entry.
     pub num_components: usize,
     /// Type of the values, `None` for names.
     pub scalar: Option<ComponentType>,
-    /// Bits of each of the integers that are coded for a row.
+    /// Bits of each of the integers that are coded for an entry.
     pub bits: u32,
 }
 
@@ -155,7 +155,7 @@ pub struct PassInfo {
     pub attribute_bytes: u64,
     /// Bytes of the stitching chunk that follows, which joins vertices again that were cut apart, 0 without
     /// one.
-    pub glue_bytes: u64,
+    pub stitching_bytes: u64,
     /// Bytes of the stream up to the end of the pass and of the chunks that belong to it.
     pub end: u64,
     pub(super) compensation: Compensation,
@@ -409,7 +409,7 @@ pub(super) fn list_passes(
                 triangles: row.triangles,
                 bytes,
                 attribute_bytes,
-                glue_bytes: 0,
+                stitching_bytes: 0,
                 end: start + with_companions,
                 compensation: Compensation::NONE,
                 row,
@@ -423,7 +423,7 @@ pub(super) fn list_passes(
                 triangles: before.triangles + row.triangles,
                 bytes,
                 attribute_bytes,
-                glue_bytes: 0,
+                stitching_bytes: 0,
                 end: before.end + with_companions,
                 compensation: Compensation::NONE,
                 row,
@@ -440,16 +440,16 @@ pub(super) fn add_announced(
     announced: &ChunkIndex,
 ) -> Result<Vec<TrailingInfo>, BadTable> {
     let mut shift = 0;
-    let mut glue = announced.glue.iter().peekable();
+    let mut stitching = announced.stitching.iter().peekable();
     for (pass, i) in passes.iter_mut().zip(0..) {
-        if let Some(&(_, bytes)) = glue.next_if(|&&(pass, _)| pass == i) {
-            pass.glue_bytes = chunk::other_size(bytes);
-            shift += pass.glue_bytes;
+        if let Some(&(_, bytes)) = stitching.next_if(|&&(pass, _)| pass == i) {
+            pass.stitching_bytes = chunk::other_size(bytes);
+            shift += pass.stitching_bytes;
         }
         pass.end += shift;
     }
-    if glue.peek().is_some() {
-        return Err(BadTable("glue is announced for a pass that is not there"));
+    if stitching.peek().is_some() {
+        return Err(BadTable("stitching is announced for a pass that is not there"));
     }
     let mut end = passes.last().map_or(0, |p| p.end);
     let place = |&(kind, payload): &(u8, u32)| {

@@ -87,7 +87,7 @@ impl Decoder {
     ///
     /// A unit is the work of an edge or a triangle, a fraction of a microsecond. The last thing done in a
     /// call may be more than is left: a vertex with all its edges, a copy of an array, which
-    /// counts one unit for 64 numbers, or a whole chunk of glue or after the last pass. Only the links of a base mesh are
+    /// counts one unit for 64 numbers, or a whole chunk of stitching or after the last pass. Only the links of a base mesh are
     /// not counted.
     ///
     /// ```

@@ -231,8 +231,8 @@ impl StreamingDecoder {
             attributes.expect((pass.kind == PassKind::Split).then_some(patches), first);
             self.awaited.push_back(kind::ATTRIBUTES);
         }
-        if pass.glue_bytes > 0 {
-            self.awaited.push_back(kind::GLUE);
+        if pass.stitching_bytes > 0 {
+            self.awaited.push_back(kind::STITCHING);
         }
         if let Some(info) = self.info.as_ref().filter(|info| info.passes.len() == self.done) {
             self.awaited.extend(info.trailing.iter().map(|trailing| trailing.code));
@@ -273,14 +273,14 @@ impl StreamingDecoder {
         Ok(is_done)
     }
 
-    /// Takes glue, or a chunk that follows the last pass.
+    /// Takes stitching, or a chunk that follows the last pass.
     fn read_extra(&mut self, chunk: &Chunk, work: &mut WorkBudget) -> Result<(), DecodeError> {
         let (Some(info), Some(pass)) = (&self.info, self.last_pass()) else {
             return Err(out_of_order(chunk));
         };
         let (payload, limits) = (self.frames.payload(chunk), &self.options.limits);
         let announced = match chunk.kind {
-            kind::GLUE => pass.glue_bytes,
+            kind::STITCHING => pass.stitching_bytes,
             kind => info.trailing.iter().find(|t| t.code == kind).map_or(0, |t| t.bytes),
         };
         if chunk::other_size(payload.len() as u32) != announced {

@@ -8,7 +8,7 @@ use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::{Domain, NO_ENTRY};
 use crate::passes::GridMesh;
 use crate::passes::attribute::declaration::MAX_VALUES_PER_BYTE;
-use crate::passes::attribute::{Brought, Desk, Layer, Rows, Truth};
+use crate::passes::attribute::{Brought, Desk, Entries, Layer, Truth};
 use crate::passes::patch::{Patches, Star};
 use crate::passes::work_budget::WorkBudget;
 use crate::simplification::LevelRecord;
@@ -18,7 +18,7 @@ use crate::simplification::record::Removed;
 pub(super) struct AttributeWriter<'a> {
     quantised: &'a Quantised,
     layers: Vec<Layer>,
-    /// Per attribute the row of each element, in the decoder's numbering.
+    /// Per attribute the entry of each element, in the decoder's numbering.
     truth: Vec<Vec<u32>>,
     payloads: Vec<Vec<u8>>,
 }
@@ -30,9 +30,9 @@ impl<'a> AttributeWriter<'a> {
         Self { quantised, layers, truth: vec![Vec::new(); quantised.list.len()], payloads: Vec::new() }
     }
 
-    /// The decoder's rows of each attribute.
-    pub(super) fn rows(&self) -> Vec<&Rows> {
-        self.layers.iter().map(|layer| &layer.rows).collect()
+    /// The decoder's entries of each attribute.
+    pub(super) fn entries(&self) -> Vec<&Entries> {
+        self.layers.iter().map(|layer| &layer.entries).collect()
     }
 
     /// A payload per pass, all empty without attributes.
@@ -51,9 +51,9 @@ impl<'a> AttributeWriter<'a> {
         let triangles = &mesh.surface.triangles;
         for (attribute, truth) in self.quantised.list.iter().zip(&mut self.truth) {
             let Some(track) = attribute.track else { continue };
-            let rows = hierarchy.seams.rows(track);
+            let entries = hierarchy.seams.entries(track);
             if attribute.declaration.domain == Domain::Triangle {
-                truth.extend(face_source.iter().map(|&slot| rows[slot as usize]));
+                truth.extend(face_source.iter().map(|&slot| entries[slot as usize]));
                 continue;
             }
             for (triangle, &slot) in triangles.iter().zip(face_source) {
@@ -61,28 +61,28 @@ impl<'a> AttributeWriter<'a> {
                 truth.extend(triangle.map(|v| {
                     let source = vertex_source[v as usize];
                     let place = there.iter().position(|&u| u == source).unwrap_or(0);
-                    rows[3 * slot as usize + place]
+                    entries[3 * slot as usize + place]
                 }));
             }
         }
         self.code(mesh, None, 0, vertex_source);
     }
 
-    /// Notes the rows at the star of a vertex that was brought back; `shift`: which of the removed faces is the first of
+    /// Notes the entries at the star of a vertex that was brought back; `shift`: which of the removed faces is the first of
     /// the star.
     pub(super) fn restore(&mut self, star: &Star, record: &LevelRecord, removed: &Removed, shift: usize) {
         for (attribute, truth) in self.quantised.list.iter().zip(&mut self.truth) {
             let Some(track) = attribute.track else { continue };
-            let rows = record.rows(track);
+            let entries = record.entries(track);
             for (i, &face) in star.faces.iter().enumerate() {
                 let place = removed.first_face + (shift + i) % removed.faces.len();
                 let face = face as usize;
                 if attribute.declaration.domain == Domain::Triangle {
                     truth.resize(truth.len().max(face + 1), NO_ENTRY);
-                    truth[face] = rows[place];
+                    truth[face] = entries[place];
                 } else {
                     truth.resize(truth.len().max(3 * face + 3), NO_ENTRY);
-                    truth[3 * face..3 * face + 3].copy_from_slice(&rows[3 * place..3 * place + 3]);
+                    truth[3 * face..3 * face + 3].copy_from_slice(&entries[3 * place..3 * place + 3]);
                 }
             }
         }
@@ -114,7 +114,7 @@ impl<'a> AttributeWriter<'a> {
                 let missing = vertex_source[truth.len()..].iter();
                 truth.extend(missing.map(|&v| attribute.of[v as usize]));
             }
-            let truth = Truth { of: truth, rows: &attribute.rows };
+            let truth = Truth { of: truth, entries: &attribute.entries };
             let work = &mut WorkBudget::unlimited();
             let done = layer.code_some(&mut coder, brought, &mut 0, Some(truth), work, &mut desk);
             debug_assert_eq!(done, Ok(true));

@@ -1,4 +1,4 @@
-//! From attributes to integers: how each is declared, and the rows of its elements.
+//! From attributes to integers: how each is declared, and the entries of its elements.
 
 use super::options::{EncodeOptions, Input};
 use crate::bitstream::scene;
@@ -21,18 +21,18 @@ pub(super) struct Quantised {
     /// Payloads of the scene and the materials.
     pub(super) scene: Option<Vec<u8>>,
     pub(super) materials: Option<Vec<u8>>,
-    /// Rows that are not finite, and so are not kept.
+    /// Entries that are not finite, and so are not kept.
     pub(super) values_dropped: usize,
 }
 
 /// One attribute as integers.
 pub(super) struct QuantisedAttribute {
     pub(super) declaration: Declaration,
-    /// Different rows, channel by channel.
-    pub(super) rows: Vec<i32>,
-    /// The row of each vertex, corner or face of the surface, or [`NO_ENTRY`].
+    /// Different entries, channel by channel.
+    pub(super) entries: Vec<i32>,
+    /// The entry of each vertex, corner or face of the surface, or [`NO_ENTRY`].
     pub(super) of: Vec<u32>,
-    /// The row of each loose element of the mesh.
+    /// The entry of each loose element of the mesh.
     pub(super) loose: HashMap<u32, u32>,
     /// Which of the seams' attributes it is, unless it belongs to vertices.
     pub(super) track: Option<usize>,
@@ -109,14 +109,14 @@ pub(super) fn quantise(
         if quantised.list.len() == MAX_ATTRIBUTES {
             return Err(fail(format!("a stream holds {MAX_ATTRIBUTES} attributes")));
         }
-        let row = |&element: &u32| attribute.entry(element as usize).map_or(NO_ENTRY, |row| row as u32);
-        let mut of: Vec<u32> = surface.of(attribute.domain).iter().map(row).collect();
+        let entry = |&element: &u32| attribute.entry(element as usize).map_or(NO_ENTRY, |entry| entry as u32);
+        let mut of: Vec<u32> = surface.of(attribute.domain).iter().map(entry).collect();
         let num_on_surface = of.len();
         let loose = loose.of(attribute.domain);
-        of.extend(loose.iter().map(row));
-        let is_dropped = |row: u32| row != NO_ENTRY && !is_finite(attribute, row as usize);
-        for row in of.iter_mut().filter(|row| is_dropped(**row)) {
-            *row = NO_ENTRY;
+        of.extend(loose.iter().map(entry));
+        let is_dropped = |entry: u32| entry != NO_ENTRY && !is_finite(attribute, entry as usize);
+        for entry in of.iter_mut().filter(|entry| is_dropped(**entry)) {
+            *entry = NO_ENTRY;
             quantised.values_dropped += usize::from(!options.lossless);
         }
         let used = compact(&mut of, attribute.num_entries());
@@ -133,11 +133,11 @@ pub(super) fn quantise(
             has_missing,
             coding,
         };
-        let rows = integers(attribute, &used, &declaration);
+        let entries = integers(attribute, &used, &declaration);
         let track = (attribute.domain != Domain::Vertex).then_some(num_tracks);
         num_tracks += usize::from(track.is_some());
         let loose = loose.into_iter().zip(of.split_off(num_on_surface)).collect();
-        let mut one = QuantisedAttribute { declaration, rows, of, loose, track };
+        let mut one = QuantisedAttribute { declaration, entries, of, loose, track };
         if track.is_some() {
             one.merge_equal();
         }
@@ -146,27 +146,27 @@ pub(super) fn quantise(
     Ok(quantised)
 }
 
-fn is_finite(attribute: &Attribute, row: usize) -> bool {
+fn is_finite(attribute: &Attribute, entry: usize) -> bool {
     let n = attribute.num_components;
-    (row * n..row * n + n).all(|k| attribute.values.number(k).is_none_or(f64::is_finite))
+    (entry * n..entry * n + n).all(|k| attribute.values.number(k).is_none_or(f64::is_finite))
 }
 
-/// Renumbers rows by their first use; returns those that are used.
-fn compact(of: &mut [u32], num_rows: usize) -> Vec<u32> {
-    let mut place = vec![NO_ENTRY; num_rows];
+/// Renumbers entries by their first use; returns those that are used.
+fn compact(of: &mut [u32], num_entries: usize) -> Vec<u32> {
+    let mut place = vec![NO_ENTRY; num_entries];
     let mut used = Vec::new();
-    for row in of.iter_mut().filter(|row| **row != NO_ENTRY) {
-        let place = &mut place[*row as usize];
+    for entry in of.iter_mut().filter(|entry| **entry != NO_ENTRY) {
+        let place = &mut place[*entry as usize];
         if *place == NO_ENTRY {
             *place = used.len() as u32;
-            used.push(*row);
+            used.push(*entry);
         }
-        *row = *place;
+        *entry = *place;
     }
     used
 }
 
-/// How the rows are coded: names, and numbers that tell things apart, by a table; directions on the octahedron; all
+/// How the entries are coded: names, and numbers that tell things apart, by a table; directions on the octahedron; all
 /// others uniformly, integers that fit exactly. `None` if a table would be too long for names.
 fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOptions) -> Option<Coding> {
     let Some(scalar) = attribute.values.component_type() else { return table(attribute, used) };
@@ -182,13 +182,13 @@ fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOptions) -> Optio
         _ => options.generic_bits,
     };
     let n = attribute.num_components;
-    let number = |row: u32, k: usize| attribute.values.number(row as usize * n + k).unwrap_or(0.0);
+    let number = |entry: u32, k: usize| attribute.values.number(entry as usize * n + k).unwrap_or(0.0);
     let mut low = vec![f64::INFINITY; n];
     let mut high = vec![f64::NEG_INFINITY; n];
-    for &row in used {
+    for &entry in used {
         for k in 0..n {
-            low[k] = low[k].min(number(row, k));
-            high[k] = high[k].max(number(row, k));
+            low[k] = low[k].min(number(entry, k));
+            high[k] = high[k].max(number(entry, k));
         }
     }
     if used.is_empty() {
@@ -219,22 +219,22 @@ fn are_directions(attribute: &Attribute, used: &[u32], scalar: ComponentType) ->
     if scalar.is_integer() && !attribute.is_normalized {
         return false;
     }
-    used.iter().all(|&row| {
-        let squared = (0..3).filter_map(|k| attribute.number(row as usize, k)).map(|x| x * x).sum::<f64>();
+    used.iter().all(|&entry| {
+        let squared = (0..3).filter_map(|k| attribute.number(entry as usize, k)).map(|x| x * x).sum::<f64>();
         (0.81..=1.21).contains(&squared)
     })
 }
 
-/// The different rows in the order of their first use; `None` if there are too many.
+/// The different entries in the order of their first use; `None` if there are too many.
 fn table(attribute: &Attribute, used: &[u32]) -> Option<Coding> {
     let n = attribute.num_components;
-    let mut rows = attribute.values.emptied();
+    let mut entries = attribute.values.emptied();
     let mut seen = HashMap::new();
-    for &row in used {
-        let key = key_of(attribute, row);
+    for &entry in used {
+        let key = key_of(attribute, entry);
         if seen.insert(key, ()).is_none() {
-            let first = row as usize * n;
-            match (&attribute.values, &mut rows) {
+            let first = entry as usize * n;
+            match (&attribute.values, &mut entries) {
                 (Values::Names(names), Values::Names(out)) => out.push(names[first].clone()),
                 (values, out) => {
                     (first..first + n).filter_map(|k| values.bits(k)).for_each(|b| out.push_bits(b))
@@ -242,53 +242,53 @@ fn table(attribute: &Attribute, used: &[u32]) -> Option<Coding> {
             }
         }
     }
-    if rows.is_empty() {
-        // Nothing has a value, but a table has rows.
-        match &mut rows {
+    if entries.is_empty() {
+        // Nothing has a value, but a table has entries.
+        match &mut entries {
             Values::Names(names) => names.push(String::new()),
             numbers => (0..n).for_each(|_| numbers.push_bits(0)),
         }
     }
-    (rows.len() / n <= MAX_TABLE).then_some(Coding::Table { rows })
+    (entries.len() / n <= MAX_TABLE).then_some(Coding::Table { entries })
 }
 
-/// What distinguishes rows of a table: a name, or the bits of numbers.
+/// What distinguishes entries of a table: a name, or the bits of numbers.
 #[derive(PartialEq, Eq, Hash)]
 enum Key<'a> {
     Name(&'a str),
     Bits(Vec<u64>),
 }
 
-fn key_of(attribute: &Attribute, row: u32) -> Key<'_> {
-    let (row, n) = (row as usize, attribute.num_components);
+fn key_of(attribute: &Attribute, entry: u32) -> Key<'_> {
+    let (entry, n) = (entry as usize, attribute.num_components);
     match &attribute.values {
-        Values::Names(names) => Key::Name(&names[row]),
-        values => Key::Bits((row * n..row * n + n).filter_map(|k| values.bits(k)).collect()),
+        Values::Names(names) => Key::Name(&names[entry]),
+        values => Key::Bits((entry * n..entry * n + n).filter_map(|k| values.bits(k)).collect()),
     }
 }
 
-/// The channels of the rows that are used.
+/// The channels of the entries that are used.
 fn integers(attribute: &Attribute, used: &[u32], declaration: &Declaration) -> Vec<i32> {
     let n = attribute.num_components;
-    let number = |row: u32, k: usize| attribute.values.number(row as usize * n + k).unwrap_or(0.0);
+    let number = |entry: u32, k: usize| attribute.values.number(entry as usize * n + k).unwrap_or(0.0);
     match &declaration.coding {
         Coding::Uniform { bits, minimum, step } => {
             let most = f64::from((1_u32 << bits) - 1);
-            let channel = |row: u32, k: usize| {
-                ((number(row, k) - minimum[k]) / step + 0.5).floor().clamp(0.0, most) as i32
+            let channel = |entry: u32, k: usize| {
+                ((number(entry, k) - minimum[k]) / step + 0.5).floor().clamp(0.0, most) as i32
             };
-            used.iter().flat_map(|&row| (0..n).map(move |k| channel(row, k))).collect()
+            used.iter().flat_map(|&entry| (0..n).map(move |k| channel(entry, k))).collect()
         }
         Coding::Octahedral { bits } => {
             let octahedron = Octahedron::new(*bits);
-            used.iter().flat_map(|&row| octahedron.place([0, 1, 2].map(|k| number(row, k)))).collect()
+            used.iter().flat_map(|&entry| octahedron.place([0, 1, 2].map(|k| number(entry, k)))).collect()
         }
         Coding::Table { .. } => {
             let mut symbols = HashMap::new();
             used.iter()
-                .map(|&row| {
+                .map(|&entry| {
                     let next = symbols.len() as i32;
-                    *symbols.entry(key_of(attribute, row)).or_insert(next)
+                    *symbols.entry(key_of(attribute, entry)).or_insert(next)
                 })
                 .collect()
         }
@@ -296,24 +296,24 @@ fn integers(attribute: &Attribute, used: &[u32], declaration: &Declaration) -> V
 }
 
 impl QuantisedAttribute {
-    /// Makes equal rows one, so that seams are where numbers differ.
+    /// Makes equal entries one, so that seams are where numbers differ.
     fn merge_equal(&mut self) {
         let n = self.declaration.num_channels();
         let mut seen: HashMap<&[i32], u32> = HashMap::new();
-        let mut rows = Vec::new();
+        let mut entries = Vec::new();
         let place: Vec<u32> = self
-            .rows
+            .entries
             .chunks_exact(n)
-            .map(|row| {
+            .map(|entry| {
                 let next = seen.len() as u32;
-                *seen.entry(row).or_insert_with(|| {
-                    rows.extend_from_slice(row);
+                *seen.entry(entry).or_insert_with(|| {
+                    entries.extend_from_slice(entry);
                     next
                 })
             })
             .collect();
         let of = self.of.iter_mut().chain(self.loose.values_mut());
-        of.filter(|row| **row != NO_ENTRY).for_each(|row| *row = place[*row as usize]);
-        self.rows = rows;
+        of.filter(|entry| **entry != NO_ENTRY).for_each(|entry| *entry = place[*entry as usize]);
+        self.entries = entries;
     }
 }

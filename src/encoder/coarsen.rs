@@ -26,7 +26,7 @@ pub(super) struct Hierarchy {
     pub(super) errors: Vec<f64>,
     pub(super) num_vertices: usize,
     pub(super) num_faces: usize,
-    /// What is left of the full surface, and the rows of attributes there.
+    /// What is left of the full surface, and the entries of attributes there.
     pub(super) slots: Surface,
     pub(super) seams: Seams,
 }
@@ -34,7 +34,7 @@ pub(super) struct Hierarchy {
 /// What goes down with a surface.
 pub(super) struct Companions {
     /// The vertices that always stay.
-    pub(super) glued: BitVec,
+    pub(super) stitched: BitVec,
     pub(super) seams: Seams,
     /// Attributes that the descriptor sees.
     pub(super) features: Option<Features>,
@@ -56,11 +56,11 @@ pub(super) fn analyse(
     let positions: Vec<[f64; 3]> = cells.iter().map(|c| c.map(|c| f64::from(c) / steps_per_unit)).collect();
     let mesh = TriMesh::from_valid_parts(positions.clone(), surface.triangles.clone());
     let geometry = Geometry { grid: cells, positions: &positions };
-    let Companions { glued, seams, features } = companions;
+    let Companions { stitched, seams, features } = companions;
     let settings = settings(options, attempt);
     let (mean_edge, descent) = rayon::join(
         move || descriptors::mean_edge_length(&mesh),
-        || Descent::new(surface, geometry, settings, glued),
+        || Descent::new(surface, geometry, settings, stitched),
     );
     let mut descent = descent.with_mean_edge(mean_edge).with_seams(seams).with_features(features);
     let squared_step = steps_per_unit.powi(2);

@@ -22,8 +22,8 @@ pub(super) fn pad(
     for (i, pass) in passes.iter_mut().enumerate() {
         ledger.cost += cost::pass(&pass.row, counts, channels);
         counts = counts.after(&pass.row);
-        ledger.cost += pass.glue.as_ref().map_or(0, |_| cost::glue(counts));
-        let companions = values.get(i).map_or(0, Vec::len) + pass.glue.as_ref().map_or(0, Vec::len);
+        ledger.cost += pass.stitching.as_ref().map_or(0, |_| cost::stitching(counts));
+        let companions = values.get(i).map_or(0, Vec::len) + pass.stitching.as_ref().map_or(0, Vec::len);
         ledger.bytes += (pass.payload.len() + companions) as u64;
         if i + 1 == num_passes {
             ledger.cost += cost::loose(loose);
@@ -45,7 +45,7 @@ mod tests {
     fn pass(action: Action, vertices: u32, bytes: u32) -> WrittenPass {
         let row = Pass { action, vertices, triangles: 2 * vertices, bytes };
         let payload = vec![1; bytes as usize];
-        WrittenPass { row, payload, glue: None, compensation: Compensation::NONE }
+        WrittenPass { row, payload, stitching: None, compensation: Compensation::NONE }
     }
 
     #[test]

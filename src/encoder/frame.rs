@@ -12,11 +12,11 @@ use crate::bitstream::pass_table;
 /// Materials of at most this many bytes come before the passes: the base mesh should not have to wait for pictures.
 const MOST_IN_FRONT: usize = 1 << 12;
 
-/// Row and payload of a pass, and the glue after it.
+/// Row and payload of a pass, and the stitching after it.
 pub(super) struct WrittenPass {
     pub(super) row: Pass,
     pub(super) payload: Vec<u8>,
-    pub(super) glue: Option<Vec<u8>>,
+    pub(super) stitching: Option<Vec<u8>>,
     pub(super) compensation: Compensation,
 }
 
@@ -99,9 +99,10 @@ fn write_attributes(bytes: &mut Vec<u8>, quantised: &Quantised, values: &[Vec<u8
 
 /// The index of the chunks that follow passes.
 fn write_index(bytes: &mut Vec<u8>, Payloads { passes, trailing, .. }: &Payloads) {
-    let glue = passes.iter().zip(0..).filter_map(|(pass, i)| Some((i, pass.glue.as_ref()?.len() as u32)));
+    let stitching =
+        passes.iter().zip(0..).filter_map(|(pass, i)| Some((i, pass.stitching.as_ref()?.len() as u32)));
     let announced = ChunkIndex {
-        glue: glue.collect(),
+        stitching: stitching.collect(),
         trailing: trailing.iter().map(|(kind, payload)| (*kind, payload.len() as u32)).collect(),
     };
     if !announced.is_empty() {
@@ -122,13 +123,13 @@ fn write_table(bytes: &mut Vec<u8>, passes: &[WrittenPass]) {
 
 /// The passes, each followed by what belongs to it, then the rest.
 fn write_passes(bytes: &mut Vec<u8>, Payloads { passes, values, trailing }: &Payloads) {
-    for (i, WrittenPass { row, payload, glue, .. }) in passes.iter().enumerate() {
+    for (i, WrittenPass { row, payload, stitching, .. }) in passes.iter().enumerate() {
         chunk::write(bytes, row.action.kind(), payload);
         if let Some(values) = values.get(i).filter(|values| !values.is_empty()) {
             chunk::write(bytes, kind::ATTRIBUTES, values);
         }
-        if let Some(glue) = glue {
-            chunk::write(bytes, kind::GLUE, glue);
+        if let Some(stitching) = stitching {
+            chunk::write(bytes, kind::STITCHING, stitching);
         }
     }
     for (kind, payload) in trailing {

@@ -15,8 +15,8 @@ use crate::mesh::{Surface, TriMesh, has_three_vertices};
 use bitvec::vec::BitVec;
 use std::cell::OnceCell;
 
-/// Glued vertices are never removed unless they are a larger share of all: the base would be too large.
-const MOST_GLUED: f64 = 0.25;
+/// Stitched vertices are never removed unless they are a larger share of all: the base would be too large.
+const MOST_STITCHED: f64 = 0.25;
 
 /// How the vertices of the cut surface came about, and what else is kept of the mesh.
 pub(super) struct GridSurface {
@@ -68,17 +68,17 @@ impl GridSurface {
         Ok((quantised, features))
     }
 
-    /// The vertices that are never removed, so that their glue is there from the start and no level has a crack.
-    pub(super) fn glued(&self) -> BitVec {
+    /// The vertices that are never removed, so that their stitching is there from the start and no level has a crack.
+    pub(super) fn stitched(&self) -> BitVec {
         let source = &self.source;
-        let is_glued = |i: usize| {
+        let is_stitched = |i: usize| {
             (i > 0 && source[i - 1] == source[i]) || source.get(i + 1).is_some_and(|&next| next == source[i])
         };
-        let glued: BitVec = (0..source.len()).map(is_glued).collect();
-        if glued.count_ones() as f64 > MOST_GLUED * source.len() as f64 {
+        let stitched: BitVec = (0..source.len()).map(is_stitched).collect();
+        if stitched.count_ones() as f64 > MOST_STITCHED * source.len() as f64 {
             return BitVec::repeat(false, source.len());
         }
-        glued
+        stitched
     }
 
     /// Vertex of the mesh for each vertex.

@@ -94,7 +94,7 @@ fn smallest_stream(
 ) -> Vec<u8> {
     let Original { input: Input { options, .. }, on_grid, quantised } = original;
     let points = compensation::points(&surface, &on_grid.cells);
-    let glued = on_grid.glued();
+    let stitched = on_grid.stitched();
     let attempts = options.hierarchies_tried();
     let mut surface = Some(surface);
     let mut smallest: Vec<u8> = Vec::new();
@@ -103,8 +103,8 @@ fn smallest_stream(
     for (i, &attempt) in attempts.iter().enumerate() {
         let is_last = i + 1 == attempts.len();
         let taken = if is_last { surface.take() } else { surface.clone() }.unwrap_or_default();
-        let (glued, seams, features) = (glued.clone(), quantised.seams(), features.cloned());
-        let companions = Companions { glued, seams, features };
+        let (stitched, seams, features) = (stitched.clone(), quantised.seams(), features.cloned());
+        let companions = Companions { stitched, seams, features };
         let hierarchy = coarsen::analyse(taken, &on_grid.cells, companions, options, attempt, &|now| {
             tries.tell(i, 0, now)
         });

@@ -7,7 +7,7 @@ use super::frame::{self, Payloads, WrittenPass};
 use super::numbering::Numbering;
 use super::patch_search::{Found, PatchSearch};
 use super::payload::{expect_sound, padded};
-use super::stitching::GlueWriter;
+use super::stitching::StitchingWriter;
 use super::trailing::{Original, Written};
 use crate::bitstream::compensation::Compensation;
 use crate::bitstream::header::{Action, MAX_VERTICES_PER_BYTE, Pass};
@@ -37,7 +37,7 @@ pub(super) struct PassWriter<'a> {
     coordinates: CoordinateModels,
     refine: RefineModels,
     attributes: AttributeWriter<'a>,
-    glue: GlueWriter<'a>,
+    stitching: StitchingWriter<'a>,
     fitter: Fitter<'a>,
     passes: Vec<WrittenPass>,
 }
@@ -65,7 +65,7 @@ impl<'a> PassWriter<'a> {
             coordinates: CoordinateModels::new(mixing),
             refine: RefineModels::new(mixing),
             attributes: AttributeWriter::new(quantised, mixing),
-            glue: GlueWriter::new(&on_grid.source, on_grid.ordered.cells.len()),
+            stitching: StitchingWriter::new(&on_grid.source, on_grid.ordered.cells.len()),
             fitter: Fitter::new(points, &hierarchy.records, cells),
             passes: Vec::new(),
         };
@@ -82,11 +82,11 @@ impl<'a> PassWriter<'a> {
         self.attributes.base(&self.mesh, hierarchy, &numbering.vertex_source, &numbering.face_source);
     }
 
-    /// Keeps the payload of a pass that touched so many elements, with the glue after it.
+    /// Keeps the payload of a pass that touched so many elements, with the stitching after it.
     fn finish_pass(&mut self, mut row: Pass, touched: usize, payload: Vec<u8>, numbering: &Numbering) {
         let payload = padded(payload, touched as u64, u64::from(MAX_VERTICES_PER_BYTE));
         row.bytes = payload.len() as u32;
-        let glue = self.glue.code(&self.mesh, &numbering.vertex_source);
+        let stitching = self.stitching.code(&self.mesh, &numbering.vertex_source);
         let hidden = self.hidden_bits();
         let is_last = hidden == 0 && self.mesh.surface.triangles.len() == self.num_faces;
         let compensation = if is_last {
@@ -94,7 +94,7 @@ impl<'a> PassWriter<'a> {
         } else {
             self.fitter.fit(&self.mesh, &numbering.vertex_source, hidden)
         };
-        self.passes.push(WrittenPass { row, payload, glue, compensation });
+        self.passes.push(WrittenPass { row, payload, stitching, compensation });
     }
 
     /// Bits of the coordinates that have not been coded yet.
@@ -209,8 +209,9 @@ impl<'a> PassWriter<'a> {
     pub(super) fn finish(self, original: &Original, numbering: &Numbering) -> Payloads {
         debug_assert_eq!(self.mesh.surface.triangles.len(), self.num_faces);
         let Numbering { vertex_source, face_source } = numbering;
-        let surface = Written { mesh: &self.mesh, vertex_source, face_source, rows: self.attributes.rows() };
-        let mut trailing = original.trailing(&surface, self.glue.into_roots());
+        let surface =
+            Written { mesh: &self.mesh, vertex_source, face_source, entries: self.attributes.entries() };
+        let mut trailing = original.trailing(&surface, self.stitching.into_roots());
         trailing.extend(frame::trailing_materials(original.quantised));
         Payloads { passes: self.passes, values: self.attributes.into_payloads(), trailing }
     }

@@ -32,7 +32,7 @@ impl Signatures {
             all.vertices = mesh.positions().iter().map(bits).collect();
             for attribute in &attributes.list {
                 let hash = |element: usize| {
-                    attribute.entry(element).map(|row| row_hash(&attribute.values, attribute, row))
+                    attribute.entry(element).map(|entry| entry_hash(&attribute.values, attribute, entry))
                 };
                 all.add(attribute.domain, (0..attribute.domain.num_elements(mesh)).map(|k| (k, hash(k))));
             }
@@ -42,16 +42,16 @@ impl Signatures {
         let quantised = quantise(input, surface, loose).ok()?;
         for (one, attribute) in quantised.list.iter().zip(&attributes.list) {
             let n = one.declaration.num_channels();
-            let hash = |row: u32| {
-                let channels = (row != NO_ENTRY).then(|| &one.rows[row as usize * n..][..n])?;
+            let hash = |entry: u32| {
+                let channels = (entry != NO_ENTRY).then(|| &one.entries[entry as usize * n..][..n])?;
                 Some(match &one.declaration.coding {
-                    Coding::Table { rows } => row_hash(rows, attribute, channels[0] as usize),
+                    Coding::Table { entries } => entry_hash(entries, attribute, channels[0] as usize),
                     _ => channels.iter().fold(1, |hash, &c| mix(hash ^ c as u64)),
                 })
             };
             let of = surface.of(attribute.domain).into_iter().zip(one.of.iter().copied());
-            let of = of.chain(one.loose.iter().map(|(&element, &row)| (element, row)));
-            all.add(attribute.domain, of.map(|(element, row)| (element as usize, hash(row))));
+            let of = of.chain(one.loose.iter().map(|(&element, &entry)| (element, entry)));
+            all.add(attribute.domain, of.map(|(element, entry)| (element as usize, hash(entry))));
         }
         Some(all)
     }
@@ -79,12 +79,14 @@ impl Signatures {
     }
 }
 
-/// Hash of the bits, or the name, of a row of some values like those of an attribute.
-fn row_hash(values: &Values, attribute: &Attribute, row: usize) -> u64 {
+/// Hash of the bits, or the name, of an entry of some values like those of an attribute.
+fn entry_hash(values: &Values, attribute: &Attribute, entry: usize) -> u64 {
     let n = attribute.num_components;
     match values.names() {
-        Some(names) => names[row].bytes().fold(1, |hash, byte| mix(hash ^ u64::from(byte))),
-        None => (row * n..row * n + n).filter_map(|k| values.bits(k)).fold(1, |hash, bits| mix(hash ^ bits)),
+        Some(names) => names[entry].bytes().fold(1, |hash, byte| mix(hash ^ u64::from(byte))),
+        None => {
+            (entry * n..entry * n + n).filter_map(|k| values.bits(k)).fold(1, |hash, bits| mix(hash ^ bits))
+        }
     }
 }
 

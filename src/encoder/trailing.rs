@@ -11,7 +11,7 @@ use crate::bitstream::header::MAX_VERTICES_PER_BYTE;
 use crate::decoder::assemble::{Extras, Joined};
 use crate::entropy::range_coder::RangeEncoder;
 use crate::mesh::surface::turns;
-use crate::passes::attribute::Rows;
+use crate::passes::attribute::Entries;
 use crate::passes::float_values::Ladder;
 use crate::passes::isolated_and_degenerate::{self, Loose};
 use crate::passes::order::{self, Order};
@@ -34,7 +34,7 @@ pub(super) struct Written<'a> {
     /// Triangle of the cut surface, and so of the ordered mesh, for each triangle.
     pub(super) face_source: &'a [u32],
     /// Of each attribute.
-    pub(super) rows: Vec<&'a Rows>,
+    pub(super) entries: Vec<&'a Entries>,
 }
 
 /// The corner of the triangle that `corner` is of where it has the vertex `first`.
@@ -45,7 +45,7 @@ fn turned_to(triangle: [u32; 3], corner: u32, first: u32) -> u32 {
 }
 
 impl Original<'_> {
-    /// Kinds and payloads of the chunks. `roots`: the glue of the surface.
+    /// Kinds and payloads of the chunks. `roots`: the stitching of the surface.
     pub(super) fn trailing(&self, surface: &Written, roots: Vec<u32>) -> Vec<(u8, Vec<u8>)> {
         if self.says_nothing() {
             return Vec::new();
@@ -152,7 +152,7 @@ impl Original<'_> {
         }
         let domains = list.iter().map(|one| one.declaration.domain);
         let elements =
-            domains.zip(&surface.rows).map(|(d, rows)| extras.elements(joined, triangles, rows, d));
+            domains.zip(&surface.entries).map(|(d, entries)| extras.elements(joined, triangles, entries, d));
         let elements: Vec<Elements> = elements.collect();
         let Input { attributes, options, .. } = self.input;
         let values = ExactValues { attributes, quantised: self.quantised, is_lossless: options.lossless };

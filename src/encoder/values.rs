@@ -60,18 +60,23 @@ struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
-    fn channels(&self, row: u32) -> Option<&'a [i32]> {
+    fn channels(&self, entry: u32) -> Option<&'a [i32]> {
         let n = self.quantised.declaration.num_channels();
-        (row != NO_ENTRY).then(|| &self.quantised.rows[row as usize * n..][..n])
+        (entry != NO_ENTRY).then(|| &self.quantised.entries[entry as usize * n..][..n])
     }
 
     /// Channels that a decoder has for an element.
     fn known(&self, element: usize) -> Option<&'a [i32]> {
         match self.elements.on_surface.get(element) {
             Some(&[there, _]) => {
-                let row =
-                    self.elements.rows.of.get(there as usize).copied().filter(|&row| row != NO_ENTRY)?;
-                Some(self.elements.rows.get(row))
+                let entry = self
+                    .elements
+                    .entries
+                    .of
+                    .get(there as usize)
+                    .copied()
+                    .filter(|&entry| entry != NO_ENTRY)?;
+                Some(self.elements.entries.get(entry))
             }
             None => self.loose(element - self.elements.on_surface.len()),
         }
@@ -82,36 +87,38 @@ impl<'a> Part<'a> {
         self.channels(self.quantised.loose.get(&element).copied().unwrap_or(NO_ENTRY))
     }
 
-    fn row(&self, element: usize) -> Option<usize> {
+    fn entry(&self, element: usize) -> Option<usize> {
         self.attribute.entry(self.of[element] as usize)
     }
 
-    /// The kinds of the components' numbers; `None` if the channels of all rows tell their bits.
+    /// The kinds of the components' numbers; `None` if the channels of all entries tell their bits.
     fn scales(&self) -> Option<Vec<Scale>> {
         let declaration = &self.quantised.declaration;
         let scalar = values::scalar_of_inexact(declaration)?;
         let n = declaration.num_components;
         let mut is_seen: BitVec = BitVec::repeat(false, self.attribute.num_entries());
         let mut is_exact = true;
-        let mut rows = Vec::new();
+        let mut entries = Vec::new();
         for element in 0..self.of.len() {
-            let Some(row) = self.row(element).filter(|&row| !is_seen.replace(row, true)) else { continue };
+            let Some(entry) = self.entry(element).filter(|&entry| !is_seen.replace(entry, true)) else {
+                continue;
+            };
             let Some(channels) = self.known(element) else {
                 is_exact = false;
                 continue;
             };
-            rows.push((row, channels));
+            entries.push((entry, channels));
             let mut plain = Values::new(scalar);
             declaration.restore(channels, &mut plain);
-            is_exact &= (0..n).all(|k| plain.bits(k) == self.attribute.values.bits(row * n + k));
+            is_exact &= (0..n).all(|k| plain.bits(k) == self.attribute.values.bits(entry * n + k));
         }
         if is_exact {
             return None;
         }
         let scale = |k: usize| {
-            let number = |i: usize| self.attribute.values.number(rows[i].0 * n + k).unwrap_or_default();
-            let around = |i: usize| values::around(declaration, rows[i].1, k);
-            cheapest_scale(values::is_wide(scalar), rows.len(), &number, &around)
+            let number = |i: usize| self.attribute.values.number(entries[i].0 * n + k).unwrap_or_default();
+            let around = |i: usize| values::around(declaration, entries[i].1, k);
+            cheapest_scale(values::is_wide(scalar), entries.len(), &number, &around)
         };
         Some((0..n).map(scale).collect())
     }
@@ -121,8 +128,8 @@ impl<'a> Part<'a> {
         let wide = values::scalar_of_inexact(declaration).is_some_and(values::is_wide);
         let ladder = |scale: &Scale| Ladder::new(wide, *scale);
         let ladders: Ladders = self.scales.as_ref().map(|scales| scales.iter().map(ladder).collect());
-        let (row, loose) = (|i: usize| self.row(i), |i: usize| self.loose(i));
-        let truth = Truth { values: &self.attribute.values, row: &row, loose: &loose };
+        let (entry, loose) = (|i: usize| self.entry(i), |i: usize| self.loose(i));
+        let truth = Truth { values: &self.attribute.values, entry: &entry, loose: &loose };
         expect_sound(values::code(coder, declaration, &ladders, self.elements, Some(&truth)));
     }
 }

@@ -104,11 +104,11 @@ impl Stream {
             let bytes = payload.len() as u32;
             match *kind {
                 kind if kind::is_pass(kind) => num_passes += 1,
-                kind::GLUE if num_passes > 0 => announced.glue.push((num_passes - 1, bytes)),
+                kind::STITCHING if num_passes > 0 => announced.stitching.push((num_passes - 1, bytes)),
                 _ => {}
             }
         }
-        announced.glue.dedup_by_key(|glue| glue.0);
+        announced.stitching.dedup_by_key(|stitching| stitching.0);
         let last = self.chunks.iter().rposition(|chunk| kind::is_pass(chunk.kind));
         for Chunk { kind, payload, .. } in self.chunks.iter().skip(last.map_or(0, |last| last + 1)) {
             let may_trail = !kind::is_critical(*kind) && !kind::is_known_elsewhere(*kind);
@@ -157,7 +157,11 @@ impl Stream {
 fn resized(payload: &[u8], chunks: &[(u8, u32)]) -> Option<Vec<u8>> {
     let mut announced = ChunkIndex::read(payload)?;
     let sizes = |kind: u8| chunks.iter().filter(move |chunk| chunk.0 == kind).map(|chunk| chunk.1);
-    announced.glue.iter_mut().zip(sizes(kind::GLUE)).for_each(|(glue, size)| glue.1 = size);
+    announced
+        .stitching
+        .iter_mut()
+        .zip(sizes(kind::STITCHING))
+        .for_each(|(stitching, size)| stitching.1 = size);
     for (kind, bytes) in &mut announced.trailing {
         *bytes = sizes(*kind).next().unwrap_or(*bytes);
     }

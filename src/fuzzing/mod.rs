@@ -496,10 +496,10 @@ fn made_up(data: &[u8]) -> Vec<u8> {
         input.0 = rest;
         piece
     };
-    let glue = piece();
+    let stitching = piece();
     let trailing = [kind::LOOSE, kind::EXACT, kind::VALUES, kind::ORDER].map(|kind| (kind, piece()));
     let announced = ChunkIndex {
-        glue: if glue.is_empty() { Vec::new() } else { vec![(0, glue.len() as u32)] },
+        stitching: if stitching.is_empty() { Vec::new() } else { vec![(0, stitching.len() as u32)] },
         trailing: trailing.map(|(kind, payload)| (kind, payload.len() as u32)).to_vec(),
     };
     let mut bytes = chunk::SIGNATURE.to_vec();
@@ -514,8 +514,8 @@ fn made_up(data: &[u8]) -> Vec<u8> {
             Action::Refine => kind::REFINE,
         };
         chunk::write(&mut bytes, kind, payload);
-        if i == 0 && !glue.is_empty() {
-            chunk::write(&mut bytes, kind::GLUE, glue);
+        if i == 0 && !stitching.is_empty() {
+            chunk::write(&mut bytes, kind::STITCHING, stitching);
         }
     }
     trailing.iter().for_each(|(kind, payload)| chunk::write(&mut bytes, *kind, payload));

@@ -23,7 +23,7 @@ const STARS_PER_TRIANGLE: u64 = 2;
 /// look.
 const PLACE_PER_VERTEX: u64 = 12;
 /// Units of a stitching chunk for each vertex there is: all are sorted by their cells.
-const GLUE_PER_VERTEX: u64 = 4;
+const STITCHING_PER_VERTEX: u64 = 4;
 /// Units of each exact position, of each element with exact values and of each of their components.
 const EXACT_PER_VERTEX: u64 = 12;
 const VALUES_PER_ELEMENT: u64 = 4;
@@ -68,8 +68,8 @@ pub(crate) fn pass(row: &Pass, before: Counts, channels: u64) -> u64 {
 }
 
 /// Units of the stitching after a pass.
-pub(crate) fn glue(after: Counts) -> u64 {
-    GLUE_PER_VERTEX * after.vertices
+pub(crate) fn stitching(after: Counts) -> u64 {
+    STITCHING_PER_VERTEX * after.vertices
 }
 
 /// Units of exact positions.

@@ -11,15 +11,15 @@ use crate::mesh::surface::{NO_CORNER, next, prev};
 const MAX_COUNTED: usize = 3;
 
 /// Adaptive models of the stitching.
-pub(crate) struct GlueModels {
-    is_glued: PlainBits,
+pub(crate) struct StitchingModels {
+    is_stitched: PlainBits,
     pick: Numbers,
 }
 
-impl Default for GlueModels {
+impl Default for StitchingModels {
     fn default() -> Self {
         // Candidates, whether the vertex lies on the boundary, and what is known of its neighbours.
-        Self { is_glued: PlainBits::new(MAX_COUNTED * 2 * 3), pick: Numbers::new(1) }
+        Self { is_stitched: PlainBits::new(MAX_COUNTED * 2 * 3), pick: Numbers::new(1) }
     }
 }
 
@@ -30,7 +30,7 @@ impl Default for GlueModels {
 /// Takes memory in proportion to the vertices.
 pub(crate) fn code<B: BitCoder>(
     coder: &mut B,
-    models: &mut GlueModels,
+    models: &mut StitchingModels,
     mesh: &GridMesh,
     roots: &mut Vec<u32>,
     target: Option<&[u32]>,
@@ -64,7 +64,7 @@ pub(crate) fn code<B: BitCoder>(
 
 fn pick<B: BitCoder>(
     coder: &mut B,
-    models: &mut GlueModels,
+    models: &mut StitchingModels,
     mesh: &GridMesh,
     v: u32,
     candidates: &[u32],
@@ -76,7 +76,7 @@ fn pick<B: BitCoder>(
     }
     let wanted = target.and_then(|t| candidates.iter().rposition(|&c| t[c as usize] == t[v as usize]));
     let context = (candidates.len().min(MAX_COUNTED) - 1) * 6 + around(mesh, v, roots);
-    if !models.is_glued.code(coder, context, wanted.is_some()) {
+    if !models.is_stitched.code(coder, context, wanted.is_some()) {
         return None;
     }
     let last = candidates.len() - 1;

@@ -2,7 +2,7 @@
 
 use super::attribute::declaration::bits_of;
 use super::attribute::octahedron::Octahedron;
-use super::attribute::{Coding, Declaration, Rows};
+use super::attribute::{Coding, Declaration, Entries};
 use super::exact::{ExactCoder, Keyed};
 use super::float_values::{Ladder, Scale};
 use super::numbers::Numbers;
@@ -13,7 +13,7 @@ use crate::mesh::{ComponentType, MAX_COMPONENTS, NO_ENTRY, Values};
 use crate::util::bytes::Reader;
 use std::collections::HashMap;
 
-/// The ordered sets of an attribute's components; `None` if its rows are exact as they are, or need not be.
+/// The ordered sets of an attribute's components; `None` if its entries are exact as they are, or need not be.
 pub(crate) type Ladders = Option<Vec<Ladder>>;
 
 /// Reads what comes before the coded values: whether those of each attribute follow exactly, and the scales
@@ -64,7 +64,7 @@ pub(crate) fn is_wide(scalar: ComponentType) -> bool {
     scalar != ComponentType::F32
 }
 
-/// The middle of the numbers that the channels of a row may stand for, and how far they reach to each side.
+/// The middle of the numbers that the channels of an entry may stand for, and how far they reach to each side.
 pub(crate) fn around(declaration: &Declaration, channels: &[i32], k: usize) -> [f64; 2] {
     match &declaration.coding {
         Coding::Uniform { minimum, step, .. } => {
@@ -87,8 +87,8 @@ fn length_of_directions(declaration: &Declaration) -> f64 {
 
 /// What has values: stitched elements of the surface, then isolated vertices and degenerate faces.
 pub(crate) struct Elements<'a> {
-    /// The rows of the surface.
-    pub(crate) rows: &'a Rows,
+    /// The entries of the surface.
+    pub(crate) entries: &'a Entries,
     /// Element of the surface, and of a corner its stitched vertex; else 0.
     pub(crate) on_surface: Vec<[u32; 2]>,
     pub(crate) num_loose: usize,
@@ -98,8 +98,8 @@ pub(crate) struct Elements<'a> {
 pub(crate) struct Truth<'a> {
     /// Values with the bits that are wanted.
     pub(crate) values: &'a Values,
-    /// Row of an element.
-    pub(crate) row: &'a dyn Fn(usize) -> Option<usize>,
+    /// Entry of an element.
+    pub(crate) entry: &'a dyn Fn(usize) -> Option<usize>,
     /// Channels of an additional element.
     pub(crate) loose: &'a dyn Fn(usize) -> Option<&'a [i32]>,
 }
@@ -108,7 +108,7 @@ pub(crate) struct Truth<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Told {
     pub(crate) values: Values,
-    /// The row of each element: of all, or of the additional ones.
+    /// The entry of each element: of all, or of the additional ones.
     pub(crate) of: Vec<u32>,
     pub(crate) is_exact: bool,
 }
@@ -124,20 +124,20 @@ pub(crate) fn code<B: BitCoder>(
     let mut exact = ladders.as_ref().map(|ladders| ExactRows::new(declaration, ladders));
     let values = declaration.scalar.map_or(Values::Names(Vec::new()), Values::new);
     let mut told = Told { values, of: Vec::new(), is_exact: exact.is_some() };
-    let wanted = |element: usize| target.map(|t| (t.values, (t.row)(element)));
+    let wanted = |element: usize| target.map(|t| (t.values, (t.entry)(element)));
     if let Some(exact) = &mut exact {
         told.of.reserve_exact(elements.on_surface.len() + elements.num_loose);
         for (i, &[element, vertex]) in elements.on_surface.iter().enumerate() {
-            let row = elements.rows.of.get(element as usize).copied().unwrap_or(NO_ENTRY);
-            let known = (row != NO_ENTRY).then(|| (elements.rows.get(row), Some([row, vertex])));
-            let row = exact.code(coder, known, wanted(i), &mut told.values)?;
-            told.of.push(row);
+            let entry = elements.entries.of.get(element as usize).copied().unwrap_or(NO_ENTRY);
+            let known = (entry != NO_ENTRY).then(|| (elements.entries.get(entry), Some([entry, vertex])));
+            let entry = exact.code(coder, known, wanted(i), &mut told.values)?;
+            told.of.push(entry);
         }
     }
     let mut loose = LooseRows::new(declaration);
     for i in 0..elements.num_loose {
         let channels = loose.code(coder, target.map(|t| (t.loose)(i)))?;
-        let row = match (&mut exact, channels) {
+        let entry = match (&mut exact, channels) {
             (Some(exact), channels) => {
                 let known = channels.map(|channels| (channels, None));
                 exact.code(coder, known, wanted(elements.on_surface.len() + i), &mut told.values)?
@@ -145,15 +145,15 @@ pub(crate) fn code<B: BitCoder>(
             (None, None) => NO_ENTRY,
             (None, Some(channels)) => {
                 declaration.restore(channels, &mut told.values);
-                last_row(&told.values, declaration.num_components)
+                last_entry(&told.values, declaration.num_components)
             }
         };
-        told.of.push(row);
+        told.of.push(entry);
     }
     Ok(told)
 }
 
-fn last_row(values: &Values, num_components: usize) -> u32 {
+fn last_entry(values: &Values, num_components: usize) -> u32 {
     (values.len() / num_components) as u32 - 1
 }
 
@@ -196,19 +196,19 @@ impl<'a> LooseRows<'a> {
     }
 }
 
-/// Rows of exact numbers of one attribute.
+/// Entries of exact numbers of one attribute.
 struct ExactRows<'a> {
     declaration: &'a Declaration,
     scalar: ComponentType,
     components: Vec<ExactCoder>,
-    /// The exact row that a row of the surface had last: at each vertex, and anywhere.
+    /// The exact entry that an entry of the surface had last: at each vertex, and anywhere.
     at_vertex: HashMap<[u32; 2], u32>,
     anywhere: HashMap<u32, u32>,
     is_repeated: PlainBits,
-    /// How the last rows were that bit, the newest lowest.
+    /// How the last entries were that bit, the newest lowest.
     history: usize,
     is_restored: PlainBits,
-    /// Whether the last rows were the restored ones, the newest lowest.
+    /// Whether the last entries were the restored ones, the newest lowest.
     restored: usize,
     is_given: PlainBits,
     /// Corrections of the components that the others determine.
@@ -217,7 +217,7 @@ struct ExactRows<'a> {
     plain: Values,
 }
 
-/// Channels of an element, and the row and vertex by which it is known.
+/// Channels of an element, and the entry and vertex by which it is known.
 type Known<'a> = Option<(&'a [i32], Option<[u32; 2]>)>;
 
 impl<'a> ExactRows<'a> {
@@ -240,7 +240,7 @@ impl<'a> ExactRows<'a> {
         }
     }
 
-    /// Codes the row of an element, which is appended to `values` unless it repeats one there.
+    /// Codes the entry of an element, which is appended to `values` unless it repeats one there.
     fn code<B: BitCoder>(
         &mut self,
         coder: &mut B,
@@ -253,25 +253,25 @@ impl<'a> ExactRows<'a> {
         }
         let n = self.declaration.num_components;
         let wanted_bits =
-            |k: usize| wanted.and_then(|(truth, row)| truth.bits(row? * n + k)).unwrap_or_default();
+            |k: usize| wanted.and_then(|(truth, entry)| truth.bits(entry? * n + k)).unwrap_or_default();
         let Some((channels, key)) = known else {
             if !self.is_given.code(coder, 0, wanted.is_some_and(|w| w.1.is_some())) {
                 return Ok(NO_ENTRY);
             }
             (0..n).for_each(|k| values.push_bits(self.code_raw(coder, wanted_bits(k))));
-            return Ok(last_row(values, n));
+            return Ok(last_entry(values, n));
         };
         let at_vertex = key.and_then(|key| self.at_vertex.get(&key).copied());
-        let anywhere = key.and_then(|[row, _]| self.anywhere.get(&row).copied());
+        let anywhere = key.and_then(|[entry, _]| self.anywhere.get(&entry).copied());
         let candidates = [at_vertex, anywhere.filter(|_| anywhere != at_vertex)];
-        for (kind, row) in candidates.into_iter().enumerate() {
-            let Some(row) = row else { continue };
-            let is_wanted = || (0..n).all(|k| values.bits(row as usize * n + k) == Some(wanted_bits(k)));
+        for (kind, entry) in candidates.into_iter().enumerate() {
+            let Some(entry) = entry else { continue };
+            let is_wanted = || (0..n).all(|k| values.bits(entry as usize * n + k) == Some(wanted_bits(k)));
             let hit = self.is_repeated.code(coder, 8 * kind + self.history, wanted.is_some() && is_wanted());
             self.history = (self.history << 1 | usize::from(hit)) & 7;
             if hit {
-                self.note(key, row);
-                return Ok(row);
+                self.note(key, entry);
+                return Ok(entry);
             }
         }
         self.plain.truncate(0);
@@ -285,15 +285,15 @@ impl<'a> ExactRows<'a> {
         } else {
             self.code_numbers(coder, channels, wanted.is_some().then_some(&wanted_bits), values)?;
         }
-        let row = last_row(values, n);
-        self.note(key, row);
-        Ok(row)
+        let entry = last_entry(values, n);
+        self.note(key, entry);
+        Ok(entry)
     }
 
-    fn note(&mut self, key: Option<[u32; 2]>, row: u32) {
+    fn note(&mut self, key: Option<[u32; 2]>, entry: u32) {
         if let Some(key) = key {
-            self.at_vertex.insert(key, row);
-            self.anywhere.insert(key[0], row);
+            self.at_vertex.insert(key, entry);
+            self.anywhere.insert(key[0], entry);
         }
     }
 

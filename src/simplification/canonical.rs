@@ -12,15 +12,15 @@ use std::collections::VecDeque;
 pub(crate) struct Anchors {
     edges: Vec<[u32; 2]>,
     fixed: BitVec,
-    glued: BitVec,
+    stitched: BitVec,
 }
 
 impl Anchors {
-    /// Takes the first edge of the first triangle of each component. The stitched vertices `glued` stay as
+    /// Takes the first edge of the first triangle of each component. The stitched vertices `stitched` stay as
     /// well.
-    pub(crate) fn new(surface: &Surface, glued: BitVec) -> Self {
+    pub(crate) fn new(surface: &Surface, stitched: BitVec) -> Self {
         let mut seen: BitVec = BitVec::repeat(false, surface.triangles.len());
-        let mut fixed = glued.clone();
+        let mut fixed = stitched.clone();
         let mut edges = Vec::new();
         let mut stack = Vec::new();
         for face in 0..surface.triangles.len() {
@@ -43,12 +43,12 @@ impl Anchors {
                 }
             }
         }
-        Self { edges, fixed, glued }
+        Self { edges, fixed, stitched }
     }
 
     /// True for vertices that no partition may take.
-    pub(crate) fn is_glued(&self, vertex: u32) -> bool {
-        self.glued[vertex as usize]
+    pub(crate) fn is_stitched(&self, vertex: u32) -> bool {
+        self.stitched[vertex as usize]
     }
 
     pub(crate) fn contain(&self, vertex: u32) -> bool {

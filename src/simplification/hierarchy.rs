@@ -71,10 +71,15 @@ pub(crate) struct Descent<'a> {
 }
 
 impl<'a> Descent<'a> {
-    /// Goes down from `surface`; the stitched vertices `glued` always stay.
-    pub(crate) fn new(surface: Surface, geometry: Geometry<'a>, settings: Settings, glued: BitVec) -> Self {
+    /// Goes down from `surface`; the stitched vertices `stitched` always stay.
+    pub(crate) fn new(
+        surface: Surface,
+        geometry: Geometry<'a>,
+        settings: Settings,
+        stitched: BitVec,
+    ) -> Self {
         let memory = ErrorMemory::new(&surface, geometry.positions);
-        let anchors = Anchors::new(&surface, glued);
+        let anchors = Anchors::new(&surface, stitched);
         let shrinking = SurfaceEditor::new(surface);
         let level = Level::collect(&shrinking);
         let (features, mean_edge, depth, is_over, seams) = (None, 0.0, 0, false, Seams::default());

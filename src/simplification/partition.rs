@@ -68,7 +68,7 @@ pub(crate) fn remove_level(
     match ranked {
         Ranked::ByScore(scores) => {
             let mut order = by_score(vertices, &scores);
-            order.retain(|&v| !anchors.is_glued(v));
+            order.retain(|&v| !anchors.is_stitched(v));
             remove_in_order(surface, geometry, &order, Some(memory), seams)
         }
         Ranked::BySaliency { saliency, rings } => {

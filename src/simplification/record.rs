@@ -11,9 +11,9 @@ pub(crate) struct LevelRecord {
     /// Slots of the star's faces, face i at ring edge i. The first `ring − 2` slots hold the patch
     /// afterwards, the others are free.
     faces: Vec<u32>,
-    /// Per attribute of corners the rows of each of these faces at both ends of its ring edge and at the vertex, per
-    /// attribute of faces the row of each face.
-    rows: Vec<Vec<u32>>,
+    /// Per attribute of corners the entries of each of these faces at both ends of its ring edge and at the vertex, per
+    /// attribute of faces the entry of each face.
+    entries: Vec<Vec<u32>>,
 }
 
 /// One removed vertex with what stood around it.
@@ -46,17 +46,17 @@ impl LevelRecord {
         self.face_ends.push(self.faces.len() as u32);
     }
 
-    /// The rows of attributes at the faces of the vertex that was pushed last.
-    pub(crate) fn push_rows(&mut self, attribute: usize, rows: impl Iterator<Item = u32>) {
-        if self.rows.len() <= attribute {
-            self.rows.resize(attribute + 1, Vec::new());
+    /// The entries of attributes at the faces of the vertex that was pushed last.
+    pub(crate) fn push_entries(&mut self, attribute: usize, entries: impl Iterator<Item = u32>) {
+        if self.entries.len() <= attribute {
+            self.entries.resize(attribute + 1, Vec::new());
         }
-        self.rows[attribute].extend(rows);
+        self.entries[attribute].extend(entries);
     }
 
-    /// All rows of an attribute.
-    pub(crate) fn rows(&self, attribute: usize) -> &[u32] {
-        &self.rows[attribute]
+    /// All entries of an attribute.
+    pub(crate) fn entries(&self, attribute: usize) -> &[u32] {
+        &self.entries[attribute]
     }
 
     pub(crate) fn len(&self) -> usize {

@@ -1,4 +1,4 @@
-//! Seams while a surface shrinks: where corners at a vertex, or faces at an edge, have different rows of an attribute.
+//! Seams while a surface shrinks: where corners at a vertex, or faces at an edge, have different entries of an attribute.
 //!
 //! A decoder that restores a vertex gives each triangle of its star what the patch had at the same edge of
 //! the hole. That is right without a further bit if a seam that runs through the vertex, in along one spoke
@@ -91,7 +91,7 @@ enum Grip {
     None,
 }
 
-/// Rows of one attribute, by the slots of a surface.
+/// Entries of one attribute, by the slots of a surface.
 struct Track {
     domain: Domain,
     /// Per corner, or per face.
@@ -108,7 +108,7 @@ pub(crate) struct Seams {
 }
 
 impl Seams {
-    /// Follows one more attribute: the row of each corner or face.
+    /// Follows one more attribute: the entry of each corner or face.
     pub(crate) fn follow(&mut self, domain: Domain, of: Vec<u32>) {
         self.tracks.push(Track { domain, of });
     }
@@ -126,8 +126,8 @@ impl Seams {
         self.grip = if self.grip == Grip::Firm { Grip::Loose } else { Grip::None };
     }
 
-    /// The row of each corner or face of an attribute.
-    pub(crate) fn rows(&self, attribute: usize) -> &[u32] {
+    /// The entry of each corner or face of an attribute.
+    pub(crate) fn entries(&self, attribute: usize) -> &[u32] {
         &self.tracks[attribute].of
     }
 
@@ -182,7 +182,7 @@ impl Seams {
         }
     }
 
-    /// The vertex of `star` has gone: notes in `record` what its faces had, and gives rows to the triangles of the
+    /// The vertex of `star` has gone: notes in `record` what its faces had, and gives entries to the triangles of the
     /// hole, which are in the star's first faces. `ears` as in [`SurfaceEditor::remove`].
     pub(crate) fn remove(&mut self, star: &Star, ears: &[usize], record: &mut LevelRecord) {
         if self.is_empty() {
@@ -199,8 +199,8 @@ impl Seams {
                 Domain::Vertex => {}
                 Domain::Corner => {
                     let at = |c: u32| of[c as usize];
-                    let rows = star.corners.iter().flat_map(|&c| [next(c), prev(c), c].map(at));
-                    record.push_rows(attribute, rows);
+                    let entries = star.corners.iter().flat_map(|&c| [next(c), prev(c), c].map(at));
+                    record.push_entries(attribute, entries);
                     // On both sides of each spoke, at its far end.
                     let degree = star.degree();
                     (self.left, self.right) = (vec![0; degree], vec![0; degree]);
@@ -223,7 +223,7 @@ impl Seams {
                 }
                 Domain::Triangle => {
                     let at = |c: u32| of[c as usize / 3];
-                    record.push_rows(attribute, star.corners.iter().map(|&c| at(c)));
+                    record.push_entries(attribute, star.corners.iter().map(|&c| at(c)));
                     self.left.clear();
                     self.left.extend(star.corners.iter().map(|&c| at(c)));
                     let last = self.left[self.left.len() - 1];
@@ -251,7 +251,7 @@ fn triangles_of(degree: usize, ears: &[usize]) -> Vec<[usize; 3]> {
     triangles
 }
 
-/// Whether the corner at `x` of the triangle x, y, z has the row to the left of spoke x.
+/// Whether the corner at `x` of the triangle x, y, z has the entry to the left of spoke x.
 fn is_left_of(x: usize, y: usize, z: usize, degree: usize, diagonal: Option<Diagonal>) -> bool {
     if y == (x + 1) % degree {
         return true;
@@ -304,7 +304,7 @@ mod tests {
         }
     }
 
-    /// A hexagon whose faces 0 to 2 and 3 to 5 have different rows: the seam runs through the middle.
+    /// A hexagon whose faces 0 to 2 and 3 to 5 have different entries: the seam runs through the middle.
     #[test]
     fn a_seam_through_a_vertex_becomes_a_diagonal() {
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
@@ -313,18 +313,18 @@ mod tests {
         surface.read_star_from(2, &mut star);
         assert_eq!(star.ring, [0, 1, 2, 3, 4, 5]);
         let mut seams = Seams::default();
-        let row = |face: u32| u32::from(face >= 3);
-        seams.follow(Domain::Corner, (0..18).map(|c| row(c / 3)).collect());
-        seams.follow(Domain::Triangle, (0..6).map(row).collect());
+        let entry = |face: u32| u32::from(face >= 3);
+        seams.follow(Domain::Corner, (0..18).map(|c| entry(c / 3)).collect());
+        seams.follow(Domain::Triangle, (0..6).map(entry).collect());
         let diagonal = Diagonal::new([0, 3], 6);
         assert_eq!(seams.demand(&star), Demand::Diagonal(diagonal));
         let mut record = LevelRecord::default();
         // Cut off 1, then 2, then 4: the diagonal 0–3 is there.
         seams.remove(&star, &[1, 2, 4, 5], &mut record);
-        assert_eq!(record.rows(1), [0, 0, 0, 1, 1, 1]);
-        assert_eq!(record.rows(0)[..6], [0; 6]);
-        assert_eq!(seams.rows(1)[..4], [0, 0, 1, 1]);
-        assert_eq!(seams.rows(0)[..12], [0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1]);
+        assert_eq!(record.entries(1), [0, 0, 0, 1, 1, 1]);
+        assert_eq!(record.entries(0)[..6], [0; 6]);
+        assert_eq!(seams.entries(1)[..4], [0, 0, 1, 1]);
+        assert_eq!(seams.entries(0)[..12], [0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1]);
     }
 
     #[test]

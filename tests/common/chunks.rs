@@ -233,9 +233,9 @@ pub fn join_announced(chunks: &[Chunk]) -> Vec<u8> {
     for announced in chunks.iter_mut().filter(|c| c.kind == b't') {
         let mut rest = &announced.payload[..];
         let mut payload = Vec::new();
-        let num_glued = take_varint(&mut rest);
-        payload.extend(varint(num_glued));
-        (0..2 * num_glued).for_each(|_| payload.extend(varint(take_varint(&mut rest))));
+        let num_stitched = take_varint(&mut rest);
+        payload.extend(varint(num_stitched));
+        (0..2 * num_stitched).for_each(|_| payload.extend(varint(take_varint(&mut rest))));
         for chunk in &trailing {
             payload.push(chunk.kind);
             payload.extend(varint(chunk.payload.len() as u32));

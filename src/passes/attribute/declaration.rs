@@ -14,18 +14,18 @@ pub(crate) const MAX_ATTRIBUTES: usize = 64;
 pub(crate) const MAX_VALUES_PER_BYTE: u64 = 1024;
 /// Most bits of a channel.
 pub(crate) const MAX_BITS: u32 = 30;
-/// Most rows of a table.
+/// Most entries of a table.
 pub(crate) const MAX_TABLE: usize = 1 << 16;
 
-/// How the rows of an attribute become integers.
+/// How the entries of an attribute become integers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Coding {
     /// Component k is `minimum[k] + q · step`, q of `bits` bits.
     Uniform { bits: u32, minimum: Vec<f64>, step: f64 },
     /// A direction as a place on the octahedron.
     Octahedral { bits: u32 },
-    /// The number of a row of this table: names, or numbers that only tell things apart.
-    Table { rows: Values },
+    /// The number of an entry of this table: names, or numbers that only tell things apart.
+    Table { entries: Values },
 }
 
 /// One attribute.
@@ -57,7 +57,7 @@ const NORMALIZED: u8 = 1;
 const HAS_MISSING: u8 = 2;
 
 impl Declaration {
-    /// Integers of a row.
+    /// Integers of an entry.
     pub(crate) fn num_channels(&self) -> usize {
         match self.coding {
             Coding::Uniform { .. } => self.num_components,
@@ -66,9 +66,9 @@ impl Declaration {
         }
     }
 
-    /// Rows of the table; 0 without one.
+    /// Entries of the table; 0 without one.
     pub(crate) fn table_len(&self) -> usize {
-        if let Coding::Table { rows } = &self.coding { rows.len() / self.num_components } else { 0 }
+        if let Coding::Table { entries } = &self.coding { entries.len() / self.num_components } else { 0 }
     }
 
     /// The range of each channel: from and to, both included.
@@ -83,7 +83,7 @@ impl Declaration {
         }
     }
 
-    /// Appends what the channels of a row stand for to values of the attribute's type.
+    /// Appends what the channels of an entry stand for to values of the attribute's type.
     pub(crate) fn restore(&self, channels: &[i32], values: &mut Values) {
         let push = |values: &mut Values, x: f64| {
             if let Some(scalar) = self.scalar {
@@ -101,12 +101,12 @@ impl Declaration {
                 let direction = Octahedron::new(*bits).direction([channels[0], channels[1]]);
                 direction.into_iter().for_each(|x| push(values, x * one));
             }
-            Coding::Table { rows } => {
+            Coding::Table { entries } => {
                 let first = channels[0] as usize * self.num_components;
-                match (rows, values) {
+                match (entries, values) {
                     (Values::Names(names), Values::Names(out)) => out.extend(names.get(first).cloned()),
-                    (rows, out) => (first..first + self.num_components)
-                        .filter_map(|k| rows.bits(k))
+                    (entries, out) => (first..first + self.num_components)
+                        .filter_map(|k| entries.bits(k))
                         .for_each(|bits| out.push_bits(bits)),
                 }
             }
@@ -227,21 +227,21 @@ fn read_coding(
             if !(1..=MAX_TABLE).contains(&count) {
                 return None;
             }
-            let rows = match scalar {
+            let entries = match scalar {
                 None => Values::Names(reader.strings(count, budget)?),
                 Some(scalar) => {
-                    let mut rows = Values::new(scalar);
+                    let mut entries = Values::new(scalar);
                     // The array doubles while it grows.
                     let num_values = (count * num_components).min(reader.len());
                     budget.take(num_values, 3 * scalar.num_bytes())?;
                     for _ in 0..count * num_components {
                         let bytes = reader.take(scalar.num_bytes())?;
-                        rows.push_bits(bytes.iter().rev().fold(0, |bits, &b| bits << 8 | u64::from(b)));
+                        entries.push_bits(bytes.iter().rev().fold(0, |bits, &b| bits << 8 | u64::from(b)));
                     }
-                    rows
+                    entries
                 }
             };
-            Coding::Table { rows }
+            Coding::Table { entries }
         }
         _ => return None,
     };
@@ -282,14 +282,16 @@ fn write_declaration(out: &mut Vec<u8>, declaration: &Declaration) {
             minimum.iter().chain([step]).for_each(|x| out.extend_from_slice(&x.to_le_bytes()));
         }
         Coding::Octahedral { bits } => out.extend([1, *bits as u8]),
-        Coding::Table { rows } => {
+        Coding::Table { entries } => {
             out.push(2);
             write_varint(out, declaration.table_len() as u32);
-            match (rows, declaration.scalar) {
+            match (entries, declaration.scalar) {
                 (Values::Names(names), _) => names.iter().for_each(|name| write_string(out, name)),
-                (rows, Some(scalar)) => (0..rows.len()).filter_map(|k| rows.bits(k)).for_each(|bits| {
-                    out.extend_from_slice(&bits.to_le_bytes()[..scalar.num_bytes()]);
-                }),
+                (entries, Some(scalar)) => {
+                    (0..entries.len()).filter_map(|k| entries.bits(k)).for_each(|bits| {
+                        out.extend_from_slice(&bits.to_le_bytes()[..scalar.num_bytes()]);
+                    })
+                }
                 (_, None) => {}
             }
         }
@@ -316,8 +318,8 @@ mod tests {
             coding,
         };
         let uniform = Coding::Uniform { bits: 10, minimum: vec![-0.5, 2.0], step: 0.25 };
-        let names = Coding::Table { rows: Values::Names(vec!["wood".into(), "ü".into()]) };
-        let numbers = Coding::Table { rows: Values::I16(vec![-1, 7, 300, 4]) };
+        let names = Coding::Table { entries: Values::Names(vec!["wood".into(), "ü".into()]) };
+        let numbers = Coding::Table { entries: Values::I16(vec![-1, 7, 300, 4]) };
         Declarations {
             list: vec![
                 declaration(
@@ -369,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_return_in_their_type() {
+    fn entries_return_in_their_type() {
         let declared = all_codings();
         let restore = |k: usize, channels: &[i32]| {
             let mut values = declared.list[k].scalar.map_or(Values::Names(vec![]), Values::new);

@@ -1,6 +1,6 @@
-//! Rows of faces.
+//! Entries of faces.
 
-use super::row_coder::{RowCoder, RowScratch};
+use super::entry_coder::{EntryCoder, EntryScratch};
 use super::star::Star;
 use super::truth::Target;
 use crate::entropy::context_mixer::PlainBits;
@@ -9,9 +9,9 @@ use crate::mesh::surface::NO_CORNER;
 use crate::passes::{GridMesh, Malformed};
 use crate::util::simd4::Lanes;
 
-/// Codes the rows of faces.
+/// Codes the entries of faces.
 pub(super) struct FaceCoder<'a> {
-    pub(super) row_coder: RowCoder<'a>,
+    pub(super) entry_coder: EntryCoder<'a>,
     pub(super) inherited: &'a mut PlainBits,
     pub(super) target: Target<'a>,
     pub(super) scratch: &'a mut FaceScratch,
@@ -32,20 +32,21 @@ impl FaceCoder<'_> {
         self.code(coder, face, false)
     }
 
-    /// The faces of a star, which have the rows of the patch that it replaced, or others.
+    /// The faces of a star, which have the entries of the patch that it replaced, or others.
     pub(super) fn code_star<B: BitCoder>(&mut self, coder: &mut B, star: Star) -> Result<(), Malformed> {
         self.gather(star);
         let is_kept = self.hand_on();
         let FaceScratch { inherited, .. } = &*self.scratch;
-        let context = 10 + usize::from(inherited.iter().all(|&row| row == inherited[0]));
+        let context = 10 + usize::from(inherited.iter().all(|&entry| entry == inherited[0]));
         if coder.is_guessing() || self.inherited.code(coder, context, is_kept) {
             return Ok(());
         }
         for i in 0..self.scratch.corners.len() {
-            let (face, row) = (self.scratch.corners[i] / 3, self.scratch.inherited[i]);
-            let is_kept = self.target.wanted(face, self.row_coder.rows).is(self.row_coder.rows, row);
+            let (face, entry) = (self.scratch.corners[i] / 3, self.scratch.inherited[i]);
+            let is_kept =
+                self.target.wanted(face, self.entry_coder.entries).is(self.entry_coder.entries, entry);
             if !self.inherited.code(coder, 2 + context, is_kept) {
-                self.code_exception(coder, star.vertex, face, row)?;
+                self.code_exception(coder, star.vertex, face, entry)?;
             }
         }
         Ok(())
@@ -56,18 +57,18 @@ impl FaceCoder<'_> {
         let surface = &self.target.mesh.surface;
         let FaceScratch { corners, inherited } = &mut *self.scratch;
         surface.fan(surface.corner_of[star.vertex as usize], corners);
-        let rows = &self.row_coder.rows.of;
+        let entries = &self.entry_coder.entries.of;
         inherited.clear();
-        inherited.extend(star.polygon(corners.len()).map(|corner| rows[corner as usize / 3]));
+        inherited.extend(star.polygon(corners.len()).map(|corner| entries[corner as usize / 3]));
     }
 
-    /// Gives these rows to the faces of the star; true if the truth allows all of them.
+    /// Gives these entries to the faces of the star; true if the truth allows all of them.
     fn hand_on(&mut self) -> bool {
-        let rows = &mut *self.row_coder.rows;
+        let entries = &mut *self.entry_coder.entries;
         let mut is_kept = true;
-        for (&corner, &row) in self.scratch.corners.iter().zip(&self.scratch.inherited) {
-            is_kept &= self.target.allows(corner / 3, rows, row);
-            rows.of[corner as usize / 3] = row;
+        for (&corner, &entry) in self.scratch.corners.iter().zip(&self.scratch.inherited) {
+            is_kept &= self.target.allows(corner / 3, entries, entry);
+            entries.of[corner as usize / 3] = entry;
         }
         is_kept
     }
@@ -90,8 +91,8 @@ impl FaceCoder<'_> {
     /// are known.
     fn look_around(&mut self, face: u32, inherited: Option<u32>, is_known: impl Fn(u32) -> bool) {
         let mesh = self.target.mesh;
-        let rows = &*self.row_coder.rows;
-        let RowScratch { around, repeatable, .. } = &mut *self.row_coder.scratch;
+        let entries = &*self.entry_coder.entries;
+        let EntryScratch { around, repeatable, .. } = &mut *self.entry_coder.scratch;
         let origin = mesh.positions[mesh.surface.vertex(3 * face) as usize];
         let own = middle(mesh, face, origin);
         repeatable.clear();
@@ -103,14 +104,14 @@ impl FaceCoder<'_> {
             let across = mesh.surface.across(corner);
             if across != NO_CORNER && is_known(across) {
                 let other = across / 3;
-                around.push(rows.of[other as usize], middle(mesh, other, origin) - own);
+                around.push(entries.of[other as usize], middle(mesh, other, origin) - own);
             }
         }
     }
 
     fn code<B: BitCoder>(&mut self, coder: &mut B, face: u32, is_exception: bool) -> Result<(), Malformed> {
-        let wanted = self.target.wanted(face, self.row_coder.rows);
-        self.row_coder.rows.of[face as usize] = self.row_coder.code(coder, wanted, is_exception)?;
+        let wanted = self.target.wanted(face, self.entry_coder.entries);
+        self.entry_coder.entries.of[face as usize] = self.entry_coder.code(coder, wanted, is_exception)?;
         Ok(())
     }
 }

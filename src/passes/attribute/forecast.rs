@@ -1,8 +1,8 @@
-//! From the rows around to the density of each channel, and its coding (`format/SPEC.md`, section 8.4).
+//! From the entries around to the density of each channel, and its coding (`format/SPEC.md`, section 8.4).
 
 use super::around::Around;
+use super::entries::Entries;
 use super::octahedron::{Octahedron, project};
-use super::rows::Rows;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::mixture::Mixture;
 use crate::entropy::range_coder::BitCoder;
@@ -53,15 +53,15 @@ pub(super) struct NumberModels {
     mirrored: f32,
 }
 
-/// How rows are looked at: with this octahedron turned inside out, or as they are.
+/// How entries are looked at: with this octahedron turned inside out, or as they are.
 #[derive(Clone, Copy)]
 struct View(Option<Octahedron>);
 
 impl View {
-    fn channel(self, row: &[i32], k: usize) -> i32 {
+    fn channel(self, entry: &[i32], k: usize) -> i32 {
         match self.0 {
-            Some(octahedron) => octahedron.flip([row[0], row[1]])[k],
-            None => row[k],
+            Some(octahedron) => octahedron.flip([entry[0], entry[1]])[k],
+            None => entry[k],
         }
     }
 }
@@ -105,24 +105,24 @@ impl NumberModels {
         }
     }
 
-    /// Codes a row and appends it; `None` if a channel leaves its range. `wanted` is not empty when encoding.
+    /// Codes an entry and appends it; `None` if a channel leaves its range. `wanted` is not empty when encoding.
     pub(super) fn code<B: BitCoder>(
         &mut self,
         coder: &mut B,
-        rows: &mut Rows,
+        entries: &mut Entries,
         around: &Around,
         wanted: &[i32],
         scratch: &mut Scratch,
     ) -> Option<u32> {
-        let num_channels = rows.num_channels;
-        let view = self.view(rows, around);
-        self.look(rows, around, view, scratch);
+        let num_channels = entries.num_channels;
+        let view = self.view(entries, around);
+        self.look(entries, around, view, scratch);
         let class = class(around);
         let by_ring = match around.ring.len() {
             0 => UNKNOWN_ROUGHNESS,
             n => {
                 let mut sum = 0.0;
-                around.ring.iter().for_each(|known| sum += rows.roughness(known.row));
+                around.ring.iter().for_each(|known| sum += entries.roughness(known.entry));
                 sum / n as f32
             }
         };
@@ -153,7 +153,7 @@ impl NumberModels {
             scratch.channels.copy_from_slice(&turned);
         }
         let roughness = log2(total_error / num_channels as f32 + FLOOR) * 8.0;
-        Some(rows.push(&scratch.channels, roughness.clamp(-120.0, 120.0) as i8))
+        Some(entries.push(&scratch.channels, roughness.clamp(-120.0, 120.0) as i8))
     }
 
     fn channel_at(&self, place: usize, num_channels: usize) -> usize {
@@ -165,12 +165,12 @@ impl NumberModels {
 
     /// Directions are looked at with the square turned inside out if the one that is expected, by the ring and
     /// the surface, lies in the lower half.
-    fn view(&self, rows: &Rows, around: &Around) -> View {
+    fn view(&self, entries: &Entries, around: &Around) -> View {
         let Flavour::Normal(octahedron) = self.flavour else { return View(None) };
         let mut sum = 0.0;
         for known in &around.ring {
-            let row = rows.get(known.row);
-            sum += octahedron.direction([row[0], row[1]])[2] as f32;
+            let entry = entries.get(known.entry);
+            sum += octahedron.direction([entry[0], entry[1]])[2] as f32;
         }
         let length = around.normal.dot3(around.normal).sqrt();
         if length > 0.0 {
@@ -189,9 +189,9 @@ impl NumberModels {
     }
 
     /// Fills the outlook of each channel, and the origin that all is counted from.
-    fn look(&mut self, rows: &Rows, around: &Around, view: View, scratch: &mut Scratch) {
+    fn look(&mut self, entries: &Entries, around: &Around, view: View, scratch: &mut Scratch) {
         let Scratch { fit, values, other, sorted, outlooks, origin, .. } = scratch;
-        let num_channels = rows.num_channels;
+        let num_channels = entries.num_channels;
         origin.clear();
         outlooks.clear();
         outlooks.resize(num_channels, Outlook::default());
@@ -203,19 +203,19 @@ impl NumberModels {
                 return;
             }
             let middle = low + (high - low) / 2;
-            let last = |k| rows.last().map_or(middle, |last| view.channel(last, k));
+            let last = |k| entries.last().map_or(middle, |last| view.channel(last, k));
             origin.extend((0..num_channels).map(last));
             let spread = (high - low) as f32 * 0.125;
             outlooks.iter_mut().for_each(|outlook| outlook.spread = spread);
             return;
         };
-        origin.extend((0..num_channels).map(|k| view.channel(rows.get(first.row), k)));
+        origin.extend((0..num_channels).map(|k| view.channel(entries.get(first.entry), k)));
         let all = || around.ring.iter().chain(&around.tips);
         fit.set(all().map(|known| known.way), around.normal);
         let read = |values: &mut Vec<f32>, k: usize| {
             values.clear();
-            let value = |row: u32| view.channel(rows.get(row), k).wrapping_sub(origin[k]) as f32;
-            values.extend(all().map(|known| value(known.row)));
+            let value = |entry: u32| view.channel(entries.get(entry), k).wrapping_sub(origin[k]) as f32;
+            values.extend(all().map(|known| value(known.entry)));
         };
         let n = around.ring.len();
         let share = 1.0 / n as f32;
@@ -240,7 +240,7 @@ impl NumberModels {
             let affine = fit.affine(values);
             let mut parallelogram = 0.0;
             if !around.triangles.is_empty() {
-                let value = |row: u32| view.channel(rows.get(row), k).wrapping_sub(origin[k]) as f32;
+                let value = |entry: u32| view.channel(entries.get(entry), k).wrapping_sub(origin[k]) as f32;
                 for &[a, b, tip] in &around.triangles {
                     parallelogram += ((value(a) + value(b)) - value(tip)) - mean;
                 }

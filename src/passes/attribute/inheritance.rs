@@ -1,6 +1,6 @@
-//! Rows that the corners of a star have from the patch that it replaced.
+//! Entries that the corners of a star have from the patch that it replaced.
 
-use super::rows::Rows;
+use super::entries::Entries;
 use super::star::{Fan, Star};
 use super::truth::Target;
 use crate::entropy::context_mixer::PlainBits;
@@ -19,13 +19,13 @@ struct Inherited {
     /// The corner of its triangle at the star's vertex.
     facing: u32,
     /// What the patch had there.
-    row: u32,
-    /// Whether one triangle of the patch had this edge and the next: it had one row for two corners of the star, and the
+    entry: u32,
+    /// Whether one triangle of the patch had this edge and the next: it had one entry for two corners of the star, and the
     /// encoder kept the one of the triangle after.
     is_cut_off: bool,
 }
 
-/// The corners of a star that inherit rows.
+/// The corners of a star that inherit entries.
 #[derive(Default)]
 pub(super) struct Inheritance {
     list: Vec<Inherited>,
@@ -34,29 +34,29 @@ pub(super) struct Inheritance {
 }
 
 impl Inheritance {
-    /// Star triangle i has at both ends of its ring edge what the patch had there, or something else: a row of its own,
+    /// Star triangle i has at both ends of its ring edge what the patch had there, or something else: an entry of its own,
     /// which is not coded yet.
     pub(super) fn code<B: BitCoder>(
         &mut self,
         coder: &mut B,
         inherited: &mut PlainBits,
         target: Target,
-        rows: &mut Rows,
+        entries: &mut Entries,
         star: Star,
         fan: Fan,
     ) {
-        self.gather(rows, star, fan);
-        let (is_kept, num_torn) = self.hand_on(target, rows, star.vertex);
+        self.gather(entries, star, fan);
+        let (is_kept, num_torn) = self.hand_on(target, entries, star.vertex);
         let is_kept = coder.is_guessing() || inherited.code(coder, num_torn.min(3), is_kept);
         self.exceptions.clear();
         if !is_kept {
-            self.code_exceptions(coder, inherited, target, rows, star.vertex);
+            self.code_exceptions(coder, inherited, target, entries, star.vertex);
         }
-        self.exceptions.iter().for_each(|&(corner, _)| rows.of[corner as usize] = NO_ENTRY);
+        self.exceptions.iter().for_each(|&(corner, _)| entries.of[corner as usize] = NO_ENTRY);
     }
 
     /// Reads what the patch had.
-    fn gather(&mut self, rows: &Rows, star: Star, Fan { corners, closed, .. }: Fan) {
+    fn gather(&mut self, entries: &Entries, star: Star, Fan { corners, closed, .. }: Fan) {
         let n = corners.len();
         let polygon = || star.polygon(n);
         let after = polygon().skip(1).chain(polygon().take(1));
@@ -65,22 +65,22 @@ impl Inheritance {
             let is_same = inside / 3 == after / 3 && (closed || i + 1 < n) && !star.is_ear();
             let of_patch =
                 if star.is_ear() { [prev(inside), next(inside)] } else { [next(inside), prev(inside)] };
-            let [first, second] = of_patch.map(|c| rows.of[c as usize]);
+            let [first, second] = of_patch.map(|c| entries.of[c as usize]);
             let facing = corners[i];
-            self.list.push(Inherited { corner: next(facing), facing, row: first, is_cut_off: false });
-            self.list.push(Inherited { corner: prev(facing), facing, row: second, is_cut_off: is_same });
+            self.list.push(Inherited { corner: next(facing), facing, entry: first, is_cut_off: false });
+            self.list.push(Inherited { corner: prev(facing), facing, entry: second, is_cut_off: is_same });
         }
     }
 
-    /// Gives the rows to the corners of the star. Returns whether the truth allows all of them, and how many of those that
+    /// Gives the entries to the corners of the star. Returns whether the truth allows all of them, and how many of those that
     /// were cut off are torn.
-    fn hand_on(&self, target: Target, rows: &mut Rows, vertex: u32) -> (bool, usize) {
+    fn hand_on(&self, target: Target, entries: &mut Entries, vertex: u32) -> (bool, usize) {
         let mut is_kept = true;
         let mut num_torn = 0;
         for one in &self.list {
-            rows.of[one.corner as usize] = one.row;
-            is_kept &= target.allows(one.corner, rows, one.row);
-            num_torn += usize::from(one.is_cut_off && one.fit_outside(target.mesh, rows, vertex) == TORN);
+            entries.of[one.corner as usize] = one.entry;
+            is_kept &= target.allows(one.corner, entries, one.entry);
+            num_torn += usize::from(one.is_cut_off && one.fit_outside(target.mesh, entries, vertex) == TORN);
         }
         (is_kept, num_torn)
     }
@@ -91,29 +91,29 @@ impl Inheritance {
         coder: &mut B,
         inherited: &mut PlainBits,
         target: Target,
-        rows: &Rows,
+        entries: &Entries,
         vertex: u32,
     ) {
         for one in &self.list {
-            let fit = one.fit_outside(target.mesh, rows, vertex);
+            let fit = one.fit_outside(target.mesh, entries, vertex);
             let context = 4 + 3 * usize::from(one.is_cut_off) + fit;
-            let is_kept = target.wanted(one.corner, rows).is(rows, one.row);
+            let is_kept = target.wanted(one.corner, entries).is(entries, one.entry);
             if !inherited.code(coder, context, is_kept) {
-                self.exceptions.push((one.corner, one.row));
+                self.exceptions.push((one.corner, one.entry));
             }
         }
     }
 }
 
 impl Inherited {
-    /// Whether the row is what the triangle outside has at the same vertex: 0 if so, [`TORN`] if not, 2 if that is not
+    /// Whether the entry is what the triangle outside has at the same vertex: 0 if so, [`TORN`] if not, 2 if that is not
     /// known.
-    fn fit_outside(&self, mesh: &GridMesh, rows: &Rows, vertex: u32) -> usize {
+    fn fit_outside(&self, mesh: &GridMesh, entries: &Entries, vertex: u32) -> usize {
         let across = mesh.surface.across(self.facing);
         if across == NO_CORNER || mesh.surface.vertex(across) > vertex {
             return 2;
         }
         let outside = if self.corner == next(self.facing) { prev(across) } else { next(across) };
-        if rows.of[outside as usize] == self.row { 0 } else { TORN }
+        if entries.of[outside as usize] == self.entry { 0 } else { TORN }
     }
 }

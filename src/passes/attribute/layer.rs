@@ -1,9 +1,9 @@
 //! One attribute on the present mesh, and what a pass brings of it (`format/SPEC.md`, section 7.11).
 
 use super::declaration::Declaration;
+use super::entries::Entries;
+use super::entry_coder::{EntryCoder, EntryModels, EntryScratch};
 use super::faces::{FaceCoder, FaceScratch};
-use super::row_coder::{RowCoder, RowModels, RowScratch};
-use super::rows::Rows;
 use super::seams::SeamModels;
 use super::star::Star;
 use super::truth::{Target, Truth};
@@ -26,11 +26,11 @@ pub(crate) struct Brought<'a> {
     pub(crate) first: usize,
 }
 
-/// The rows of one attribute and all that is learnt about them.
+/// The entries of one attribute and all that is learnt about them.
 #[derive(Clone)]
 pub(crate) struct Layer {
-    pub(crate) rows: Rows,
-    models: RowModels,
+    pub(crate) entries: Entries,
+    models: EntryModels,
     /// Is a star as it inherits; is an element of it.
     inherited: PlainBits,
     seams: SeamModels,
@@ -39,7 +39,7 @@ pub(crate) struct Layer {
 /// Scratch space of a layer.
 #[derive(Default)]
 pub(crate) struct Desk {
-    rows: RowScratch,
+    entries: EntryScratch,
     /// Corners at a vertex.
     fan: Vec<u32>,
     wedges: WedgeScratch,
@@ -49,8 +49,8 @@ pub(crate) struct Desk {
 impl Layer {
     pub(crate) fn new(declaration: &Declaration, mixing: Mixing) -> Self {
         Self {
-            rows: Rows::new(declaration.domain, declaration.num_channels()),
-            models: RowModels::new(declaration, mixing),
+            entries: Entries::new(declaration.domain, declaration.num_channels()),
+            models: EntryModels::new(declaration, mixing),
             inherited: PlainBits::new(14),
             seams: SeamModels::new(),
         }
@@ -73,13 +73,13 @@ impl Layer {
         let Brought { mesh, patches, first } = brought;
         let surface = &mesh.surface;
         let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
-        self.rows.resize(num_vertices, num_faces);
-        let by_faces = patches.is_none() && self.rows.domain == Domain::Triangle;
+        self.entries.resize(num_vertices, num_faces);
+        let by_faces = patches.is_none() && self.entries.domain == Domain::Triangle;
         let count = if by_faces { num_faces } else { num_vertices - first };
         let target = Target { mesh, truth };
         while *place < count {
             let units = if by_faces { 3 } else { surface.valence[first + *place] as usize };
-            if !work.take(units * self.rows.num_channels) {
+            if !work.take(units * self.entries.num_channels) {
                 return Ok(false);
             }
             if coder.is_exhausted() {
@@ -87,7 +87,7 @@ impl Layer {
             }
             let vertex = (first + *place) as u32;
             let star = patches.map(|patches| Star { patches, patch: *place, vertex });
-            match (self.rows.domain, star) {
+            match (self.entries.domain, star) {
                 (Domain::Vertex, _) => self.code_vertex(coder, target, vertex, desk)?,
                 (Domain::Corner, star) => self.wedges(target, desk).code(coder, vertex, star)?,
                 (Domain::Triangle, None) => self.faces(target, desk).code_base(coder, *place as u32)?,
@@ -95,7 +95,7 @@ impl Layer {
             }
             *place += 1;
         }
-        self.rows.compact();
+        self.entries.compact();
         Ok(true)
     }
 
@@ -108,23 +108,23 @@ impl Layer {
     ) -> Result<(), Malformed> {
         let surface = &target.mesh.surface;
         let closed = surface.fan(surface.corner_of[vertex as usize], &mut desk.fan);
-        let Self { rows, models, .. } = self;
-        let wanted = target.wanted(vertex, rows);
-        let mut row_coder = RowCoder { rows, models, scratch: &mut desk.rows };
-        row_coder.look_around(target.mesh, vertex, &desk.fan, closed);
-        self.rows.of[vertex as usize] = row_coder.code(coder, wanted, false)?;
+        let Self { entries, models, .. } = self;
+        let wanted = target.wanted(vertex, entries);
+        let mut entry_coder = EntryCoder { entries, models, scratch: &mut desk.entries };
+        entry_coder.look_around(target.mesh, vertex, &desk.fan, closed);
+        self.entries.of[vertex as usize] = entry_coder.code(coder, wanted, false)?;
         Ok(())
     }
 
     fn wedges<'a>(&'a mut self, target: Target<'a>, desk: &'a mut Desk) -> WedgeCoder<'a> {
-        let Self { rows, models, inherited, seams } = self;
-        let row_coder = RowCoder { rows, models, scratch: &mut desk.rows };
-        WedgeCoder { row_coder, inherited, seams, target, scratch: &mut desk.wedges }
+        let Self { entries, models, inherited, seams } = self;
+        let entry_coder = EntryCoder { entries, models, scratch: &mut desk.entries };
+        WedgeCoder { entry_coder, inherited, seams, target, scratch: &mut desk.wedges }
     }
 
     fn faces<'a>(&'a mut self, target: Target<'a>, desk: &'a mut Desk) -> FaceCoder<'a> {
-        let Self { rows, models, inherited, .. } = self;
-        let row_coder = RowCoder { rows, models, scratch: &mut desk.rows };
-        FaceCoder { row_coder, inherited, target, scratch: &mut desk.faces }
+        let Self { entries, models, inherited, .. } = self;
+        let entry_coder = EntryCoder { entries, models, scratch: &mut desk.entries };
+        FaceCoder { entry_coder, inherited, target, scratch: &mut desk.faces }
     }
 }

@@ -1,6 +1,6 @@
 //! Where seams run at a vertex.
 
-use super::rows::Rows;
+use super::entries::Entries;
 use super::star::Fan;
 use super::truth::Target;
 use crate::entropy::context_mixer::PlainBits;
@@ -29,13 +29,13 @@ impl SeamModels {
         &mut self,
         coder: &mut B,
         target: Target,
-        rows: &Rows,
+        entries: &Entries,
         fan: Fan,
         found: &mut Vec<bool>,
     ) {
         let n = fan.corners.len();
         let first = usize::from(!fan.closed);
-        let at_end = |i: usize| fan.at_end(i, target.mesh, rows);
+        let at_end = |i: usize| fan.at_end(i, target.mesh, entries);
         let is_seam = |i: usize| target.tells_apart(fan.corners[i], fan.before(i));
         found.clear();
         found.resize(n, false);
@@ -66,12 +66,12 @@ impl Fan<'_> {
     }
 
     /// Whether a seam runs at the far end of the spoke before corner `i`, if that is known.
-    fn at_end(&self, i: usize, mesh: &GridMesh, rows: &Rows) -> usize {
+    fn at_end(&self, i: usize, mesh: &GridMesh, entries: &Entries) -> usize {
         let corner = self.corners[i];
         if mesh.surface.vertex(next(corner)) >= self.vertex {
             return UNKNOWN;
         }
-        let [left, right] = [prev(self.before(i)), next(corner)].map(|c| rows.of[c as usize]);
+        let [left, right] = [prev(self.before(i)), next(corner)].map(|c| entries.of[c as usize]);
         if (left == NO_ENTRY) != (right == NO_ENTRY) { UNKNOWN } else { usize::from(left != right) }
     }
 }

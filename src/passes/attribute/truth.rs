@@ -1,38 +1,38 @@
-//! What an encoder wants the rows to become.
+//! What an encoder wants the entries to become.
 
-use super::rows::Rows;
+use super::entries::Entries;
 use crate::mesh::NO_ENTRY;
 use crate::passes::GridMesh;
 
-/// What an encoder wants a layer to become: rows of its own numbering.
+/// What an encoder wants a layer to become: entries of its own numbering.
 #[derive(Clone, Copy)]
 pub(crate) struct Truth<'a> {
-    /// The row of each element of the mesh after the pass; only those that the pass brings are read.
+    /// The entry of each element of the mesh after the pass; only those that the pass brings are read.
     pub(crate) of: &'a [u32],
-    /// All rows, channel by channel.
-    pub(crate) rows: &'a [i32],
+    /// All entries, channel by channel.
+    pub(crate) entries: &'a [i32],
 }
 
-/// The row that is coded.
+/// The entry that is coded.
 #[derive(Clone, Copy)]
 pub(super) enum Wanted<'a> {
     /// A decoder will find out.
     Unknown,
     Missing,
-    Row(&'a [i32]),
+    Entry(&'a [i32]),
 }
 
 impl Wanted<'_> {
-    pub(super) fn is(&self, rows: &Rows, row: u32) -> bool {
+    pub(super) fn is(&self, entries: &Entries, entry: u32) -> bool {
         match self {
             Wanted::Unknown => false,
-            Wanted::Missing => row == NO_ENTRY,
-            Wanted::Row(wanted) => row != NO_ENTRY && rows.get(row) == *wanted,
+            Wanted::Missing => entry == NO_ENTRY,
+            Wanted::Entry(wanted) => entry != NO_ENTRY && entries.get(entry) == *wanted,
         }
     }
 }
 
-/// The mesh after a pass, and, for an encoder, the rows of its elements.
+/// The mesh after a pass, and, for an encoder, the entries of its elements.
 #[derive(Clone, Copy)]
 pub(super) struct Target<'a> {
     pub(super) mesh: &'a GridMesh,
@@ -40,21 +40,23 @@ pub(super) struct Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// The row of an element.
-    pub(super) fn wanted(&self, element: u32, rows: &Rows) -> Wanted<'a> {
-        let Some(Truth { of, rows: channels }) = self.truth else { return Wanted::Unknown };
+    /// The entry of an element.
+    pub(super) fn wanted(&self, element: u32, entries: &Entries) -> Wanted<'a> {
+        let Some(Truth { of, entries: channels }) = self.truth else { return Wanted::Unknown };
         match of[element as usize] {
             NO_ENTRY => Wanted::Missing,
-            row => Wanted::Row(&channels[row as usize * rows.num_channels..][..rows.num_channels]),
+            entry => {
+                Wanted::Entry(&channels[entry as usize * entries.num_channels..][..entries.num_channels])
+            }
         }
     }
 
-    /// Whether nothing speaks against this row of an element: the truth, or that there is none.
-    pub(super) fn allows(&self, element: u32, rows: &Rows, row: u32) -> bool {
-        self.truth.is_none() || self.wanted(element, rows).is(rows, row)
+    /// Whether nothing speaks against this entry of an element: the truth, or that there is none.
+    pub(super) fn allows(&self, element: u32, entries: &Entries, entry: u32) -> bool {
+        self.truth.is_none() || self.wanted(element, entries).is(entries, entry)
     }
 
-    /// Whether two elements have different rows.
+    /// Whether two elements have different entries.
     pub(super) fn tells_apart(&self, a: u32, b: u32) -> bool {
         self.truth.is_some_and(|truth| truth.of[a as usize] != truth.of[b as usize])
     }

@@ -1,8 +1,8 @@
-//! Rows of corners: one for each wedge at a vertex, from seam to seam.
+//! Entries of corners: one for each wedge at a vertex, from seam to seam.
 
 use super::around::Known;
+use super::entry_coder::EntryCoder;
 use super::inheritance::Inheritance;
-use super::row_coder::RowCoder;
 use super::seams::SeamModels;
 use super::star::{Fan, Star};
 use super::truth::Target;
@@ -16,9 +16,9 @@ use crate::util::simd4::Lanes;
 /// Triangles looked at on either side of a corner that does not inherit.
 const MAX_TURNS: usize = 8;
 
-/// Codes the rows of the corners at one vertex.
+/// Codes the entries of the corners at one vertex.
 pub(super) struct WedgeCoder<'a> {
-    pub(super) row_coder: RowCoder<'a>,
+    pub(super) entry_coder: EntryCoder<'a>,
     pub(super) inherited: &'a mut PlainBits,
     pub(super) seams: &'a mut SeamModels,
     pub(super) target: Target<'a>,
@@ -46,10 +46,10 @@ impl WedgeCoder<'_> {
         let closed = surface.fan(surface.corner_of[vertex as usize], corners);
         let fan = Fan { vertex, corners, closed };
         if let Some(star) = star {
-            inheritance.code(coder, self.inherited, self.target, self.row_coder.rows, star, fan);
+            inheritance.code(coder, self.inherited, self.target, self.entry_coder.entries, star, fan);
         }
-        self.seams.code(coder, self.target, self.row_coder.rows, fan, is_seam);
-        self.code_rows(coder, vertex, closed)?;
+        self.seams.code(coder, self.target, self.entry_coder.entries, fan, is_seam);
+        self.code_entries(coder, vertex, closed)?;
         if star.is_some() {
             self.code_exceptions(coder, vertex)?;
         }
@@ -57,7 +57,12 @@ impl WedgeCoder<'_> {
     }
 
     /// Begins after a seam, then goes from seam to seam.
-    fn code_rows<B: BitCoder>(&mut self, coder: &mut B, vertex: u32, closed: bool) -> Result<(), Malformed> {
+    fn code_entries<B: BitCoder>(
+        &mut self,
+        coder: &mut B,
+        vertex: u32,
+        closed: bool,
+    ) -> Result<(), Malformed> {
         let WedgeScratch { corners, is_seam, .. } = &mut *self.scratch;
         let n = corners.len();
         let start = if closed { is_seam.iter().position(|&s| s).unwrap_or(0) } else { 0 };
@@ -68,23 +73,23 @@ impl WedgeCoder<'_> {
         while begin < n {
             let length = is_seam[begin + 1..].iter().position(|&s| s).map_or(n - begin, |k| k + 1);
             let wedge = &corners[begin..begin + length];
-            self.row_coder.look_around(self.target.mesh, vertex, wedge, is_whole);
-            let wanted = self.target.wanted(wedge[0], self.row_coder.rows);
-            let row = self.row_coder.code(coder, wanted, false)?;
-            wedge.iter().for_each(|&c| self.row_coder.rows.of[c as usize] = row);
+            self.entry_coder.look_around(self.target.mesh, vertex, wedge, is_whole);
+            let wanted = self.target.wanted(wedge[0], self.entry_coder.entries);
+            let entry = self.entry_coder.code(coder, wanted, false)?;
+            wedge.iter().for_each(|&c| self.entry_coder.entries.of[c as usize] = entry);
             begin += length;
         }
         Ok(())
     }
 
-    /// Rows of the corners of a star that do not inherit theirs.
+    /// Entries of the corners of a star that do not inherit theirs.
     fn code_exceptions<B: BitCoder>(&mut self, coder: &mut B, vertex: u32) -> Result<(), Malformed> {
         for i in 0..self.scratch.inheritance.exceptions.len() {
             let (corner, inherited) = self.scratch.inheritance.exceptions[i];
             self.look_around_exception(corner);
             self.gather_repeatable(vertex, corner, inherited);
-            let wanted = self.target.wanted(corner, self.row_coder.rows);
-            self.row_coder.rows.of[corner as usize] = self.row_coder.code(coder, wanted, true)?;
+            let wanted = self.target.wanted(corner, self.entry_coder.entries);
+            self.entry_coder.entries.of[corner as usize] = self.entry_coder.code(coder, wanted, true)?;
         }
         Ok(())
     }
@@ -93,9 +98,9 @@ impl WedgeCoder<'_> {
     fn look_around_exception(&mut self, corner: u32) {
         let mesh = self.target.mesh;
         let surface = &mesh.surface;
-        let rows = &*self.row_coder.rows;
-        let around = &mut self.row_coder.scratch.around;
-        let of = |c: u32| rows.of[c as usize];
+        let entries = &*self.entry_coder.entries;
+        let around = &mut self.entry_coder.scratch.around;
+        let of = |c: u32| entries.of[c as usize];
         around.begin_at(mesh, corner / 3);
         let origin = mesh.positions[surface.vertex(corner) as usize];
         let way = |c: u32| Lanes::between(origin, mesh.positions[surface.vertex(c) as usize]);
@@ -107,16 +112,16 @@ impl WedgeCoder<'_> {
         for &c in self.scratch.corners.iter().filter(|&&c| c != own && of(c) == of(own)) {
             for end in [next(c), prev(c)] {
                 if of(end) != NO_ENTRY && surface.vertex(end) != surface.vertex(corner) {
-                    around.tips.push(Known { row: of(end), way: way(end) });
+                    around.tips.push(Known { entry: of(end), way: way(end) });
                 }
             }
         }
     }
 
-    /// Rows that such a corner may repeat: what it would have inherited, then those of other triangles at its vertex.
+    /// Entries that such a corner may repeat: what it would have inherited, then those of other triangles at its vertex.
     fn gather_repeatable(&mut self, vertex: u32, corner: u32, inherited: u32) {
         let surface = &self.target.mesh.surface;
-        let repeatable = &mut self.row_coder.scratch.repeatable;
+        let repeatable = &mut self.entry_coder.scratch.repeatable;
         repeatable.clear();
         repeatable.push(inherited);
         for turn in [Surface::swing_left, Surface::swing_right] {
@@ -127,7 +132,7 @@ impl WedgeCoder<'_> {
                     break;
                 }
                 if surface.triangles[c as usize / 3].iter().all(|&v| v <= vertex) {
-                    repeatable.push(self.row_coder.rows.of[c as usize]);
+                    repeatable.push(self.entry_coder.entries.of[c as usize]);
                 }
             }
         }

@@ -1,10 +1,10 @@
-//! Codes a row: none, one of those around, or a new one.
+//! Codes an entry: none, one of those around, or a new one.
 
 use super::around::Around;
 use super::declaration::{Coding, Declaration};
+use super::entries::Entries;
 use super::forecast::{Flavour, NumberModels, Scratch};
 use super::octahedron::Octahedron;
-use super::rows::Rows;
 use super::truth::Wanted;
 use crate::entropy::context_mixer::{MixedBit, Mixing, PlainBits};
 use crate::entropy::range_coder::BitCoder;
@@ -12,27 +12,27 @@ use crate::entropy::tables::Tables;
 use crate::mesh::{NO_ENTRY, Semantic};
 use crate::passes::{GridMesh, Malformed};
 
-/// Neighbouring rows that a row may repeat.
+/// Neighbouring entries that an entry may repeat.
 const MAX_REPEATED: usize = 3;
-/// Different rows around that are told apart.
+/// Different entries around that are told apart.
 const MAX_COMPARED: usize = 16;
-/// Bits of a row's number in a table that have models; the rest are raw.
+/// Bits of an entry's number in a table that have models; the rest are raw.
 const MODELLED_BITS: u32 = 8;
 
-/// What is learnt about the rows of an attribute.
+/// What is learnt about the entries of an attribute.
 #[derive(Clone)]
-pub(super) struct RowModels {
+pub(super) struct EntryModels {
     missing: PlainBits,
     repeated: MixedBit<3>,
     numbers: NumberModels,
     symbols: PlainBits,
     has_missing: bool,
     num_symbols: u32,
-    /// Whether the last rows repeated another, the latest in bit 0.
+    /// Whether the last entries repeated another, the latest in bit 0.
     history: usize,
 }
 
-impl RowModels {
+impl EntryModels {
     pub(super) fn new(declaration: &Declaration, mixing: Mixing) -> Self {
         let flavour = match (&declaration.coding, declaration.semantic) {
             (Coding::Octahedral { bits }, _) => Flavour::Normal(Octahedron::new(*bits)),
@@ -53,29 +53,29 @@ impl RowModels {
     }
 }
 
-/// What is known of the row that is coded now, and scratch space.
+/// What is known of the entry that is coded now, and scratch space.
 #[derive(Default)]
-pub(super) struct RowScratch {
+pub(super) struct EntryScratch {
     pub(super) around: Around,
-    /// More rows that an exception may repeat.
+    /// More entries that an exception may repeat.
     pub(super) repeatable: Vec<u32>,
     numbers: Scratch,
-    /// Different rows around, and how often each is there.
+    /// Different entries around, and how often each is there.
     repeated: Vec<(u32, usize)>,
 }
 
-impl RowScratch {
-    /// Counts the rows that the row may repeat, the most frequent ones first.
-    fn count_repeated(&mut self, rows: &Rows, is_exception: bool) {
+impl EntryScratch {
+    /// Counts the entries that the entry may repeat, the most frequent ones first.
+    fn count_repeated(&mut self, entries: &Entries, is_exception: bool) {
         let found = &mut self.repeated;
         found.clear();
-        let around = self.around.ring.iter().map(|known| known.row);
+        let around = self.around.ring.iter().map(|known| known.entry);
         let repeatable: &[u32] = if is_exception { &self.repeatable } else { &[] };
-        for row in around.chain(repeatable.iter().copied().filter(|&row| row != NO_ENTRY)) {
-            match found.iter().position(|&(other, _)| rows.are_equal(other, row)) {
+        for entry in around.chain(repeatable.iter().copied().filter(|&entry| entry != NO_ENTRY)) {
+            match found.iter().position(|&(other, _)| entries.are_equal(other, entry)) {
                 Some(k) => found[k].1 += 1,
                 // Longer rings tell no more.
-                None if found.len() < MAX_COMPARED => found.push((row, 1)),
+                None if found.len() < MAX_COMPARED => found.push((entry, 1)),
                 None => {}
             }
         }
@@ -84,20 +84,20 @@ impl RowScratch {
     }
 }
 
-/// Codes rows of an attribute and appends those that are new.
-pub(super) struct RowCoder<'a> {
-    pub(super) rows: &'a mut Rows,
-    pub(super) models: &'a mut RowModels,
-    pub(super) scratch: &'a mut RowScratch,
+/// Codes entries of an attribute and appends those that are new.
+pub(super) struct EntryCoder<'a> {
+    pub(super) entries: &'a mut Entries,
+    pub(super) models: &'a mut EntryModels,
+    pub(super) scratch: &'a mut EntryScratch,
 }
 
-impl RowCoder<'_> {
+impl EntryCoder<'_> {
     /// Looks around `vertex` from the wedge of `corners`.
     pub(super) fn look_around(&mut self, mesh: &GridMesh, vertex: u32, corners: &[u32], closed: bool) {
-        self.scratch.around.gather(mesh, self.rows, vertex, corners, closed);
+        self.scratch.around.gather(mesh, self.entries, vertex, corners, closed);
     }
 
-    /// Codes a row from what is around it. An exception may also repeat one of the rows that are repeatable.
+    /// Codes an entry from what is around it. An exception may also repeat one of the entries that are repeatable.
     pub(super) fn code<B: BitCoder>(
         &mut self,
         coder: &mut B,
@@ -107,20 +107,20 @@ impl RowCoder<'_> {
         if self.models.has_missing && self.code_missing(coder, wanted) {
             return Ok(NO_ENTRY);
         }
-        if let Some(row) = self.code_repeated(coder, wanted, is_exception) {
-            return Ok(row);
+        if let Some(entry) = self.code_repeated(coder, wanted, is_exception) {
+            return Ok(entry);
         }
-        let channels = if let Wanted::Row(row) = wanted { row } else { &[] };
+        let channels = if let Wanted::Entry(entry) = wanted { entry } else { &[] };
         if self.models.num_symbols > 0 {
             let symbol = self.models.code_symbol(coder, channels.first().map_or(0, |&s| s as u32))?;
-            return Ok(self.rows.push(&[symbol as i32], 0));
+            return Ok(self.entries.push(&[symbol as i32], 0));
         }
-        let RowScratch { around, numbers, .. } = &mut *self.scratch;
-        let row = self.models.numbers.code(coder, self.rows, around, channels, numbers);
-        row.ok_or(Malformed("a value of an attribute lies outside its range"))
+        let EntryScratch { around, numbers, .. } = &mut *self.scratch;
+        let entry = self.models.numbers.code(coder, self.entries, around, channels, numbers);
+        entry.ok_or(Malformed("a value of an attribute lies outside its range"))
     }
 
-    /// Whether there is no row.
+    /// Whether there is no entry.
     fn code_missing<B: BitCoder>(&mut self, coder: &mut B, wanted: Wanted) -> bool {
         let around = &self.scratch.around;
         let context = match (around.num_missing, around.ring.len()) {
@@ -131,26 +131,29 @@ impl RowCoder<'_> {
         self.models.missing.code(coder, context, matches!(wanted, Wanted::Missing))
     }
 
-    /// Whether the row is one of those around, the most frequent ones first.
+    /// Whether the entry is one of those around, the most frequent ones first.
     fn code_repeated<B: BitCoder>(
         &mut self,
         coder: &mut B,
         wanted: Wanted,
         is_exception: bool,
     ) -> Option<u32> {
-        self.scratch.count_repeated(self.rows, is_exception);
-        let RowScratch { around, repeated: found, .. } = &*self.scratch;
+        self.scratch.count_repeated(self.entries, is_exception);
+        let EntryScratch { around, repeated: found, .. } = &*self.scratch;
         let models = &mut *self.models;
-        let num_rows = found.len().min(7);
+        let num_entries = found.len().min(7);
         let of_ring = around.ring.len().min(7) * 2 + usize::from(around.is_closed);
-        for (k, &(row, count)) in found.iter().take(MAX_REPEATED).enumerate() {
+        for (k, &(entry, count)) in found.iter().take(MAX_REPEATED).enumerate() {
             let set = usize::from(is_exception) * MAX_REPEATED + k;
-            let contexts =
-                [set * 64 + count.min(7) * 8 + num_rows, set * 64 + (models.history & 63), k * 16 + of_ring];
-            let is_it = wanted.is(self.rows, row);
+            let contexts = [
+                set * 64 + count.min(7) * 8 + num_entries,
+                set * 64 + (models.history & 63),
+                k * 16 + of_ring,
+            ];
+            let is_it = wanted.is(self.entries, entry);
             if models.repeated.code(coder, Tables::get(), contexts, [], set, is_it) {
                 models.history = models.history << 1 | 1;
-                return Some(row);
+                return Some(entry);
             }
         }
         if !found.is_empty() {
@@ -160,8 +163,8 @@ impl RowCoder<'_> {
     }
 }
 
-impl RowModels {
-    /// The number of a row in the table of an attribute.
+impl EntryModels {
+    /// The number of an entry in the table of an attribute.
     fn code_symbol<B: BitCoder>(&mut self, coder: &mut B, wanted: u32) -> Result<u32, Malformed> {
         let bits = 32 - (self.num_symbols - 1).leading_zeros();
         let modelled = bits.min(MODELLED_BITS);
@@ -179,7 +182,7 @@ impl RowModels {
         if symbol < self.num_symbols {
             Ok(symbol)
         } else {
-            Err(Malformed("a row that its table does not have"))
+            Err(Malformed("an entry that its table does not have"))
         }
     }
 }

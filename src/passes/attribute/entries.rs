@@ -1,22 +1,22 @@
-//! The rows of an attribute, and which of them an element has.
+//! The entries of an attribute, and which of them an element has.
 
 use crate::mesh::{Domain, NO_ENTRY, Surface};
 
-/// Rows of integers, and the row of each vertex, corner or face.
+/// Entries of integers, and the entry of each vertex, corner or face.
 #[derive(Clone)]
-pub(crate) struct Rows {
+pub(crate) struct Entries {
     pub(super) domain: Domain,
     pub(super) num_channels: usize,
     values: Vec<i32>,
-    /// Per row: base-2 logarithm of its residual, in eighths.
+    /// Per entry: base-2 logarithm of its residual, in eighths.
     roughness: Vec<i8>,
-    /// The row that was appended last.
+    /// The entry that was appended last.
     last: Vec<i32>,
     /// Per element; [`NO_ENTRY`] for none, or none yet.
     pub(crate) of: Vec<u32>,
 }
 
-impl Rows {
+impl Entries {
     pub(super) fn new(domain: Domain, num_channels: usize) -> Self {
         Self {
             domain,
@@ -28,8 +28,8 @@ impl Rows {
         }
     }
 
-    pub(crate) fn get(&self, row: u32) -> &[i32] {
-        let first = row as usize * self.num_channels;
+    pub(crate) fn get(&self, entry: u32) -> &[i32] {
+        let first = entry as usize * self.num_channels;
         &self.values[first..first + self.num_channels]
     }
 
@@ -37,8 +37,8 @@ impl Rows {
         self.roughness.len()
     }
 
-    pub(super) fn roughness(&self, row: u32) -> f32 {
-        f32::from(self.roughness[row as usize]) / 8.0
+    pub(super) fn roughness(&self, entry: u32) -> f32 {
+        f32::from(self.roughness[entry as usize]) / 8.0
     }
 
     pub(super) fn push(&mut self, channels: &[i32], roughness: i8) -> u32 {
@@ -49,12 +49,12 @@ impl Rows {
         self.len() as u32 - 1
     }
 
-    /// The row that was appended last, if any was.
+    /// The entry that was appended last, if any was.
     pub(super) fn last(&self) -> Option<&[i32]> {
         (!self.last.is_empty()).then_some(&self.last)
     }
 
-    /// Forgets rows that no element has any more, once they could be the most: splits replace rows of
+    /// Forgets entries that no element has any more, once they could be the most: splits replace entries of
     /// corners and faces.
     pub(super) fn compact(&mut self) {
         if self.domain == Domain::Vertex || self.len() <= self.of.len() {
@@ -62,19 +62,19 @@ impl Rows {
         }
         let mut place = vec![NO_ENTRY; self.len()];
         let (mut values, mut roughness) = (Vec::new(), Vec::new());
-        for row in self.of.iter_mut().filter(|row| **row != NO_ENTRY) {
-            let old = *row as usize;
+        for entry in self.of.iter_mut().filter(|entry| **entry != NO_ENTRY) {
+            let old = *entry as usize;
             if place[old] == NO_ENTRY {
                 place[old] = roughness.len() as u32;
                 values.extend_from_slice(&self.values[old * self.num_channels..][..self.num_channels]);
                 roughness.push(self.roughness[old]);
             }
-            *row = place[old];
+            *entry = place[old];
         }
         (self.values, self.roughness) = (values, roughness);
     }
 
-    /// The row at a corner.
+    /// The entry at a corner.
     #[inline]
     pub(super) fn at(&self, surface: &Surface, corner: u32) -> u32 {
         let element = match self.domain {
@@ -85,7 +85,7 @@ impl Rows {
         self.of.get(element as usize).copied().unwrap_or(NO_ENTRY)
     }
 
-    /// Whether two rows say the same.
+    /// Whether two entries say the same.
     pub(super) fn are_equal(&self, a: u32, b: u32) -> bool {
         a == b || a != NO_ENTRY && b != NO_ENTRY && self.get(a) == self.get(b)
     }
