@@ -18,14 +18,14 @@ const WRITTEN: [(&str, &str, &str); 14] = [
     ("describe ball.ply -d sqem -o heat.ply", "heat.ply", "642 vertices, 1280 triangles, coloured by sqem"),
     ("info ball.lwc --plot curve.svg", "curve.svg", "chart of "),
     ("info ball.lwc --plot curve.png", "curve.png", " pixels"),
-    ("filter ball.ply --gain 5..=0 -o smooth.ply", "smooth.ply", "642 vertices, 1280 faces"),
-    ("filter ball.ply --denoise -o clean.stl", "clean.stl", "642 vertices, 1280 faces"),
+    ("filter ball.ply --gain 5..=0 -o smooth.ply", "smooth.ply", "642 vertices, 1280 triangles"),
+    ("filter ball.ply --denoise -o clean.stl", "clean.stl", "642 vertices, 1280 triangles"),
     (
         "edit ball.lwc coarse.obj -o bent.glb",
         "bent.glb",
         "642 vertices, 1280 triangles, details above level 2",
     ),
-    ("encode ball.ply -o other.lwc", "other.lwc", "642 vertices, 1280 faces"),
+    ("encode ball.ply -o other.lwc", "other.lwc", "642 vertices, 1280 triangles"),
     ("man pages", "pages", " manual pages"),
 ];
 

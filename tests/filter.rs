@@ -82,7 +82,7 @@ fn a_changed_level_gets_its_details_back() {
     folder.ok("decode ball.lwc -o fine.ply --quiet");
     folder.ok("decode ball.lwc --level 4 -o coarse.obj --quiet");
     let (_, _, said) = folder.run("edit ball.lwc coarse.obj -o same.ply");
-    assert!(said.contains("2562 vertices, 5120 faces, details above level 4"), "{said}");
+    assert!(said.contains("2562 vertices, 5120 triangles, details above level 4"), "{said}");
     let largest = |a: &TriMesh, b: &TriMesh| {
         let coordinates = a.positions().as_flattened().iter().zip(b.positions().as_flattened());
         coordinates.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
