@@ -109,9 +109,8 @@ def build(edits, folder):
         if count == 0:
             raise SystemExit(f"{file} has no `{words}` any more")
         path.write_text(text)
-    fast = ["--config", "profile.release.lto=false", "--config", "profile.release.codegen-units=16"]
     features = ["--no-default-features", "--features", "encoder,io,metrics"]
-    command = ["cargo", "build", "--release", "--quiet", "--example", "measure", "--target-dir", TARGET, *features, *fast]
+    command = ["cargo", "build", "--release", "--quiet", "--example", "measure", "--target-dir", TARGET, *features]
     subprocess.run(command, cwd=folder, check=True)
     program = folder / "program"
     shutil.copy(TARGET / "release" / "examples" / "measure", program)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sizes, times and memory of whole commands: lwc beside draco_encoder and draco_decoder.
 
-    cargo build --release
+    cargo build --profile dist
     benches/peers.py [--runs 5] MESH... > table.md
 
 MESH: .obj or .ply, also as .zst (unpacked with `zstd` first, so that both programs read the same
@@ -21,7 +21,7 @@ import sys
 import tempfile
 import time
 
-LWC = pathlib.Path(__file__).resolve().parent.parent / "target" / "release" / "lwc"
+LWC = pathlib.Path(__file__).resolve().parent.parent / "target" / "dist" / "lwc"
 
 
 def has_draco():

@@ -30,10 +30,10 @@ fi
 make() {
     local name=$1
     shift
-    "$cargo" build ${flags[@]+"${flags[@]}"} -p lwc-wasm --target $target --release --locked "$@"
+    "$cargo" build ${flags[@]+"${flags[@]}"} -p lwc-wasm --target $target --profile dist --locked "$@"
     npx --no-install wasm-opt -O3 --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int \
         --enable-sign-ext --enable-mutable-globals --strip-debug --strip-producers \
-        "$CARGO_TARGET_DIR/$target/release/lwc_wasm.wasm" -o "dist/$name"
+        "$CARGO_TARGET_DIR/$target/dist/lwc_wasm.wasm" -o "dist/$name"
     printf '%s: %s bytes, %s gzip\n' "$name" "$(stat -c %s "dist/$name")" "$(gzip -9c "dist/$name" | wc -c)"
 }
 
