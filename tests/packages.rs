@@ -26,7 +26,10 @@ fn all_packages_have_the_version_of_the_crate() {
     for path in ["bindings/c/Cargo.toml", "bindings/python/Cargo.toml", "web/wasm/Cargo.toml"] {
         assert!(text(path).contains("version.workspace = true"), "{path}");
     }
-    assert!(text("bindings/python/pyproject.toml").contains("dynamic = [\"version\"]"), "maturin takes that of the crate");
+    assert!(
+        text("bindings/python/pyproject.toml").contains("dynamic = [\"version\"]"),
+        "maturin takes that of the crate"
+    );
 }
 
 #[test]

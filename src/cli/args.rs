@@ -47,7 +47,7 @@ pub struct Scale {
     pub descriptor: Descriptor,
     /// Attributes that the descriptor uses in addition to positions; for `pca` and `pca-qem` only.
     ///
-    /// `color`, `uv`, `normal` or names of attributes, separated by commas. The whole range of an attribute counts
+    /// `color`, `texcoord`, `normal` or names of attributes, separated by commas. The whole range of an attribute counts
     /// as much as WEIGHT mean edge lengths, 0 to 1e6, by default 10.
     #[arg(long, value_name = "NAME[:WEIGHT],…", value_delimiter = ',')]
     pub descriptor_attributes: Vec<FeatureChoice>,

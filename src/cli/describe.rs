@@ -23,7 +23,7 @@ use std::path::PathBuf;
 ///
 /// As CSV: the header `vertex,value` and one line per vertex, in the order of the file, with all digits.
 /// As PNG: a picture coloured by the values, with a legend. As PLY: the mesh with the same colours at its
-/// vertices. Vertices without faces have the value 0.
+/// vertices. Vertices without triangles have the value 0.
 #[derive(Debug, clap::Args)]
 pub struct Describe {
     /// Mesh to describe.

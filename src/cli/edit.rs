@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 /// Put the details of a stream back on one of its coarse levels that was edited.
 ///
-/// Decode a level, move its vertices in any program that keeps vertices and faces as they are, and give the
+/// Decode a level, move its vertices in any program that keeps vertices and triangles as they are, and give the
 /// result here: every detail follows the surface that it stands on, so a bent model keeps its wrinkles. The
 /// level is recognised by its number of vertices.
 #[derive(Debug, clap::Args)]
@@ -25,7 +25,7 @@ pub struct Edit {
     /// The whole stream.
     #[arg(value_name = "FILE.lwc")]
     pub stream: PathBuf,
-    /// The changed mesh, with the vertices and faces of a level.
+    /// The changed mesh, with the vertices and triangles of a level.
     #[arg(value_name = "CHANGED")]
     pub changed: PathBuf,
     /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.zst.

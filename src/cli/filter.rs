@@ -19,7 +19,7 @@ use std::path::PathBuf;
 /// Smooth or enhance features of a chosen size, or remove noise.
 ///
 /// The mesh becomes a base mesh, level 0, and the details of levels 1, 2, … up to the finest; the details of
-/// the levels chosen are multiplied and the mesh is put together again, with the same vertices and faces.
+/// the levels chosen are multiplied and the mesh is put together again, with the same vertices and triangles.
 /// Without -o the levels are listed: vertices, and the root mean square of the details.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\

@@ -77,14 +77,14 @@ impl Destination {
     }
 }
 
-/// Says of a file what was written: `a.obj: 12 vertices, 20 faces, 1234 bytes`.
+/// Says of a file what was written: `a.obj: 12 vertices, 20 triangles, 1234 bytes`.
 pub fn say_written(destination: &Destination, what: &str, ui: &Ui) {
     let Destination::File(path) = destination else { return };
     let size = fs::metadata(path).map_or(String::new(), |file| format!(", {} bytes", file.len()));
     ui.say(&format!("{}: {what}{size}", path.display()));
 }
 
-/// `12 vertices, 20 faces`.
+/// `12 vertices, 20 triangles`.
 pub fn size_of(mesh: &TriMesh) -> String {
     let vertices = counted(mesh.num_vertices(), "vertex", "vertices");
     format!("{vertices}, {}", counted(mesh.num_triangles(), "triangle", "triangles"))

@@ -53,7 +53,7 @@ fn scaled(number: &str, prefix: &str, base: f64) -> Option<f64> {
     Some((number * base.powi(power as i32)).round())
 }
 
-/// `1 face`, `2 faces`.
+/// `1 vertex`, `2 vertices`.
 pub fn counted(n: usize, one: &str, many: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { many })
 }

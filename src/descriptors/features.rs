@@ -22,7 +22,7 @@ pub struct Features {
 /// One attribute that a descriptor is to see, `NAME` or `NAME:WEIGHT` as text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FeatureChoice {
-    /// `color`, `uv` or `normal` for the first of these, else the name of the attribute, spaces as `/`.
+    /// `color`, `texcoord` or `normal` for the first of these, else the name of the attribute, spaces as `/`.
     pub attribute: String,
     /// See [`Features::new`].
     pub weight: f64,
@@ -33,7 +33,7 @@ impl FeatureChoice {
     fn find<'a>(&self, attributes: &'a Attributes) -> Option<&'a Attribute> {
         let wanted = match self.attribute.as_str() {
             "color" => |s| matches!(s, Semantic::Color(_)),
-            "uv" => |s| matches!(s, Semantic::TexCoord(_)),
+            "texcoord" => |s| matches!(s, Semantic::TexCoord(_)),
             "normal" => |s| s == Semantic::Normal,
             _ => |_| false,
         };
@@ -246,8 +246,8 @@ mod tests {
         let found = |text: &str| choice(text).unwrap().find(&attributes).map(|found| found.name.clone());
         assert_eq!(found("color").as_deref(), Some("c"));
         assert_eq!(found("a/b").as_deref(), Some("a b"));
-        let missing = Features::choose(&square(), &attributes, &[choice("uv").unwrap()]);
-        assert_eq!(missing, Err(FeaturesError::Missing { name: "uv".into() }));
+        let missing = Features::choose(&square(), &attributes, &[choice("texcoord").unwrap()]);
+        assert_eq!(missing, Err(FeaturesError::Missing { name: "texcoord".into() }));
     }
 
     #[test]

@@ -43,8 +43,7 @@ pub struct Encode {
     pub growth: f64,
     /// How the vertices that a level removes are chosen.
     ///
-    /// - weighted-error: the error, weighted by the descriptor, decides which vertices stay, the cost of coding which of
-    ///   the others go
+    /// - weighted-error: vertices stay whose error, weighted by the descriptor, is large; of the others the cheap ones go
     /// - algorithm1: exactly the paper's Algorithm 1
     #[arg(long, value_name = "NAME", verbatim_doc_comment)]
     #[arg(default_value = EncodeOptions::default().partition.name(), value_parser = partition_parser())]
@@ -103,13 +102,13 @@ pub struct Encode {
     /// stored after the last pass.
     #[arg(long)]
     pub lossless: bool,
-    /// Keep vertices that no face uses. Without this option they are dropped and counted.
+    /// Keep vertices that no triangle uses. Without this option they are dropped and counted.
     #[arg(long)]
     pub keep_isolated: bool,
-    /// Keep faces that have the same vertex twice. Without this option they are dropped and counted.
+    /// Keep triangles that have the same vertex twice. Without this option they are dropped and counted.
     #[arg(long)]
     pub keep_degenerate: bool,
-    /// Keep the order of vertices and faces, and the first corner of each face; `lwc info` shows how many bytes that takes.
+    /// Keep the order of vertices and triangles, and the first corner of each triangle; `lwc info` shows how many bytes that takes.
     #[arg(long)]
     pub keep_order: bool,
     /// Join the meshes of a scene (.glb .gltf) into one, each in its place. Without this option each mesh is stored

@@ -132,8 +132,8 @@ fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
         ui.warn(name, &format!("{values} of attributes left out: not finite"));
     }
     if degenerate_triangles > 0 {
-        let faces = counted(degenerate_triangles, "degenerate triangle", "degenerate triangles");
-        ui.warn(name, &format!("{faces} dropped"));
+        let triangles = counted(degenerate_triangles, "degenerate triangle", "degenerate triangles");
+        ui.warn(name, &format!("{triangles} dropped"));
     }
     if isolated_vertices > 0 {
         let vertices = counted(isolated_vertices, "vertex", "vertices");

@@ -54,7 +54,7 @@ pub struct Experiment {
     /// Unit of length inside the descriptors: the mean edge length of the mesh, or the unit of the file.
     #[arg(long, value_name = "UNIT", default_value = "mean-edge", value_parser = units_parser())]
     pub units: Units,
-    /// How faces are weighted in vertex normals.
+    /// How triangles are weighted in vertex normals.
     #[arg(long, value_name = "HOW", default_value = NormalWeights::default().name())]
     #[arg(value_parser = normals_parser())]
     pub normals: NormalWeights,

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 Examples:
   lwc render model.lwc -o model.png --level 6 --wireframe
   lwc render terrain.ply -o heat.png --up z --color-by harris3d --clip 2
-  lwc render textured.lwc -o uv.png --bytes 20K --color-by uv
+  lwc render textured.lwc -o texcoord.png --bytes 20K --color-by texcoord
   lwc render model.lwc -o levels.png --montage --levels 0,4,8,12 --shading flat")]
 pub struct Render {
     /// Mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst) or stream (.lwc).
@@ -32,7 +32,7 @@ pub struct Render {
     pub bytes: Option<u64>,
     #[command(flatten)]
     pub picture: Picture,
-    /// Colour by a descriptor, its values spread over [0, 1], or by an attribute: `color`, `normal`, or `uv` as
+    /// Colour by a descriptor, its values spread over [0, 1], or by an attribute: `color`, `normal`, or `texcoord` as
     /// red and green with a pattern of squares. Magenta where there is no value.
     #[arg(long, value_name = "NAME", value_parser = color_by_parser())]
     pub color_by: Option<ColorBy>,
@@ -67,11 +67,12 @@ pub enum ColorBy {
 pub enum AttributeKind {
     Color,
     Normal,
-    Uv,
+    TexCoord,
 }
 
 impl AttributeKind {
-    const NAMES: [(&str, Self); 3] = [("color", Self::Color), ("normal", Self::Normal), ("uv", Self::Uv)];
+    const NAMES: [(&str, Self); 3] =
+        [("color", Self::Color), ("normal", Self::Normal), ("texcoord", Self::TexCoord)];
 
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, kind)| *kind == self).map_or("", |(name, _)| name)
@@ -81,7 +82,7 @@ impl AttributeKind {
         attributes.list.iter().find(|attribute| match self {
             Self::Color => matches!(attribute.semantic, Semantic::Color(_)),
             Self::Normal => attribute.semantic == Semantic::Normal,
-            Self::Uv => matches!(attribute.semantic, Semantic::TexCoord(_)),
+            Self::TexCoord => matches!(attribute.semantic, Semantic::TexCoord(_)),
         })
     }
 }

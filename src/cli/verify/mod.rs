@@ -103,18 +103,18 @@ fn compare_surface(
     }
     if decoded.num_triangles() != expected.triangles.len() {
         let (found, wanted) = (decoded.num_triangles(), expected.triangles.len());
-        return Err(format!("{found} faces in place of {wanted}"));
+        return Err(format!("{found} triangles in place of {wanted}"));
     }
     let cells = decoded.quantized_positions();
     let found = sorted(decoded.triangles().iter().map(|t| t.map(|v| cells[v as usize])));
     let differing = num_missing(&expected.triangles, &found);
     if differing > 0 {
-        return Err(format!("{differing} of {} faces are missing", found.len()));
+        return Err(format!("{differing} of {} triangles are missing", found.len()));
     }
     Ok(())
 }
 
-/// Compares all vertices and faces, without their order or with it.
+/// Compares all vertices and triangles, without their order or with it.
 fn compare_whole(
     mesh: &TriMesh,
     decoded: &TriMesh,
@@ -124,7 +124,7 @@ fn compare_whole(
     let sizes = |mesh: &TriMesh| (mesh.num_vertices(), mesh.num_triangles());
     if sizes(mesh) != sizes(decoded) {
         let ((v, f), (n, m)) = (sizes(decoded), sizes(mesh));
-        return Err(format!("{v} vertices and {f} faces in place of {n} and {m}"));
+        return Err(format!("{v} vertices and {f} triangles in place of {n} and {m}"));
     }
     let place = |p: [f64; 3]| match options.lossless {
         true => p.map(f64::to_bits),
@@ -133,13 +133,13 @@ fn compare_whole(
     let [wanted, found]: [Vec<[u64; 3]>; 2] =
         [mesh, decoded].map(|mesh| mesh.positions().iter().map(|&p| place(p)).collect());
     if options.keep_order && (wanted != found || mesh.triangles() != decoded.triangles()) {
-        return Err("the order of vertices or faces differs".into());
+        return Err("the order of vertices or triangles differs".into());
     }
     // Where the grid is finer than doubles, places do not tell cells.
     let magnitude = grid.origin.iter().fold(grid.side + f64::MIN_POSITIVE, |m, o| m.max(o.abs()));
     let is_told = options.lossless || grid.side / grid.steps > 8.0 * f64::EPSILON * magnitude;
     if is_told && stars(mesh, &wanted) != stars(decoded, &found) {
-        return Err("vertices have other faces".into());
+        return Err("vertices have other triangles".into());
     }
     Ok(())
 }
@@ -147,9 +147,9 @@ fn compare_whole(
 /// What a stream keeps of a mesh.
 fn kept(mesh: &TriMesh, options: &EncodeOptions) -> TriMesh {
     let is_kept = |t: &&[u32; 3]| options.keep_degenerate || is_usable(t);
-    let faces: Vec<[u32; 3]> = mesh.triangles().iter().filter(is_kept).copied().collect();
+    let triangles: Vec<[u32; 3]> = mesh.triangles().iter().filter(is_kept).copied().collect();
     let mut is_named = vec![options.keep_isolated; mesh.num_vertices()];
-    faces.iter().flatten().for_each(|&v| is_named[v as usize] = true);
+    triangles.iter().flatten().for_each(|&v| is_named[v as usize] = true);
     let mut name = vec![0; mesh.num_vertices()];
     let vertices = (0..mesh.num_vertices()).filter(|&v| is_named[v]);
     let positions: Vec<[f64; 3]> = vertices
@@ -159,11 +159,11 @@ fn kept(mesh: &TriMesh, options: &EncodeOptions) -> TriMesh {
             mesh.positions()[v]
         })
         .collect();
-    let faces = faces.into_iter().map(|t| t.map(|v| name[v as usize])).collect();
-    TriMesh::new(positions, faces).unwrap_or_default()
+    let triangles = triangles.into_iter().map(|t| t.map(|v| name[v as usize])).collect();
+    TriMesh::new(positions, triangles).unwrap_or_default()
 }
 
-/// For each vertex a hash of its place and of the places of all its faces, sorted.
+/// For each vertex a hash of its place and of the places of all its triangles, sorted.
 fn stars(mesh: &TriMesh, places: &[[u64; 3]]) -> Vec<u64> {
     let hash = |what: &dyn Fn(&mut DefaultHasher)| {
         let mut hasher = DefaultHasher::new();
@@ -188,15 +188,15 @@ struct Quantised {
     origin: [f64; 3],
     side: f64,
     steps: f64,
-    /// Vertices that usable faces have.
+    /// Vertices that usable triangles have.
     num_vertices: usize,
-    /// Usable faces, see [`sorted`].
+    /// Usable triangles, see [`sorted`].
     triangles: Vec<[Cell; 3]>,
 }
 
 impl Quantised {
     /// g = floor((x − min)·(2^q − 1)/s + ½) per axis: min per axis and s the longest side, both over the
-    /// vertices of the faces with three different vertices and what else is kept. `side` is s as the stream has
+    /// vertices of the triangles with three different vertices and what else is kept. `side` is s as the stream has
     /// it, if it differs by the rounding of coordinates only.
     fn new(mesh: &TriMesh, options: &EncodeOptions, side: f64) -> Self {
         let usable = || mesh.triangles().iter().filter(|t| is_usable(t));
@@ -329,14 +329,14 @@ mod tests {
         };
         let mut moved = positions.clone();
         moved[40][2] += 0.05;
-        fails(moved, triangles.clone(), 12, "6 of 242 faces are missing");
+        fails(moved, triangles.clone(), 12, "6 of 242 triangles are missing");
         let mut shifted = positions.clone();
         shifted.iter_mut().for_each(|p| p[0] += 1.0);
         fails(shifted, triangles.clone(), 12, "grid");
         fails(positions.clone(), triangles.clone(), 11, "grid");
         let mut flipped = triangles.clone();
         flipped[7].swap(0, 1);
-        fails(positions.clone(), flipped, 12, "1 of 242 faces are missing");
+        fails(positions.clone(), flipped, 12, "1 of 242 triangles are missing");
         fails(positions, [&triangles[..], &triangles[3..4]].concat(), 12, "in place of");
     }
 

@@ -108,7 +108,7 @@ impl Model {
     }
 }
 
-/// Whether there is something beside the surface that the page shows.
+/// Whether there is something in addition to the surface that the page shows.
 fn has_assets(info: &StreamInfo) -> bool {
     let is_shown = |semantic| matches!(semantic, Semantic::Color(_) | Semantic::Normal);
     info.scene().is_some() || info.attributes().iter().any(|attribute| is_shown(attribute.semantic))
