@@ -33,7 +33,7 @@ pub struct Info {
     pub limits: LimitArgs,
 }
 
-/// Reads up to the table of passes, counts the bytes behind it, reports.
+/// Reads up to the table of passes, counts the bytes after it, reports.
 pub fn run(args: &Info, ui: &Ui) -> anyhow::Result<()> {
     if let Some(plot) = &args.plot {
         return rate_distortion::run(args.input.as_deref(), args.limits.limits(), plot, ui);

@@ -100,13 +100,13 @@ pub fn has_ending(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
-/// `model.obj.zst` → `model`, in the same folder: a further ending may be put behind it.
+/// `model.obj.zst` → `model`, in the same folder: another ending can be appended.
 pub fn without_mesh_ending(path: &Path) -> PathBuf {
     let is_compressed = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("zst"));
     if is_compressed { path.with_extension("").with_extension("") } else { path.with_extension("") }
 }
 
-/// Puts `ending` behind a path, whatever dots it has.
+/// Appends `ending` to a path, whatever dots it has.
 pub fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
     let mut name = path.into_os_string();
     name.push(".");

@@ -71,7 +71,7 @@ impl StreamSource {
     /// Decodes as it reads, at most `most_bytes`, and stops reading once the wanted level is there.
     ///
     /// # Errors
-    /// If reading fails. What is wrong with the stream itself comes back beside the finest sound mesh.
+    /// If reading fails. What is wrong with the stream itself is returned together with the finest sound mesh.
     pub fn decode(
         &self,
         most_bytes: Option<u64>,

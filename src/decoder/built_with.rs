@@ -2,9 +2,9 @@
 
 use crate::bitstream::profile::Profile;
 
-/// Whether the decoder knows what stands beside the surface. Without that all of it is skipped as chunks that nobody
-/// knows, and the compiler leaves out what would read it.
+/// Whether the decoder reads what a stream holds in addition to the surface. Otherwise it skips all of that like unknown
+/// chunks, and the compiler leaves out the code that would read it.
 pub(super) const ASSETS: bool = cfg!(feature = "assets");
 
-/// Whether the decoder reads the profile *fast*. Without it the compiler leaves out what would.
+/// Whether the decoder reads the profile *fast*. Otherwise the compiler leaves out the code that would.
 pub(super) const STREAMS: bool = Profile::Fast.is_supported();

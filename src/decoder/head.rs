@@ -15,7 +15,7 @@ use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
 use crate::util::budget::Budget;
 
-/// The header chunks that have come.
+/// The header chunks received so far.
 #[derive(Default)]
 pub(super) struct Head {
     header: Option<Header>,

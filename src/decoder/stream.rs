@@ -1,4 +1,4 @@
-//! Chunk after chunk: which may come next, and what each brings.
+//! Reads chunk after chunk: which one is allowed next, and what it changes.
 
 use super::assemble::{Extras, NewChunk};
 use super::attributes::{self, AttributeDecoder};
@@ -31,7 +31,7 @@ pub(super) struct StreamingDecoder {
     pub(super) passes: PassDecoder,
     /// The pass that is half done, and its chunk.
     pub(super) running: Option<(Running, Chunk)>,
-    /// Kinds of the chunks that must come before the next pass, or after the last: what belongs to the
+    /// Kinds of the chunks that must precede the next pass, or after the last: what belongs to the
     /// passes that are done.
     pub(super) awaited: VecDeque<u8>,
     pub(super) attributes: Option<AttributeDecoder>,

@@ -12,7 +12,7 @@ use crate::bitstream::pass_table;
 /// Materials of at most this many bytes come before the passes: the base mesh should not have to wait for pictures.
 const MOST_IN_FRONT: usize = 1 << 12;
 
-/// Row and payload of a pass, and the stitching after it.
+/// Row of the table and payload of a pass, and the payload of the stitching chunk after it.
 pub(super) struct WrittenPass {
     pub(super) row: Pass,
     pub(super) payload: Vec<u8>,

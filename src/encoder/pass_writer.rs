@@ -82,7 +82,7 @@ impl<'a> PassWriter<'a> {
         self.attributes.base(&self.mesh, hierarchy, &numbering.vertex_source, &numbering.face_source);
     }
 
-    /// Keeps the payload of a pass that touched so many elements, with the stitching after it.
+    /// Keeps the payload of a pass that touched `touched` elements, with the stitching chunk after it.
     fn finish_pass(&mut self, mut row: Pass, touched: usize, payload: Vec<u8>, numbering: &Numbering) {
         let payload = padded(payload, touched as u64, u64::from(MAX_VERTICES_PER_BYTE));
         row.bytes = payload.len() as u32;
@@ -102,7 +102,7 @@ impl<'a> PassWriter<'a> {
         self.full_bits - self.quantization_bits
     }
 
-    /// Codes so many refinements.
+    /// Codes `count` refinements.
     pub(super) fn refine_times(&mut self, count: u32, numbering: &Numbering) {
         (0..count).for_each(|_| self.refine(numbering));
     }

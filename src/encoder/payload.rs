@@ -2,7 +2,7 @@
 
 use crate::passes::Malformed;
 
-/// Pads a payload with zeros until a decoder believes that it holds so many things.
+/// Pads a payload with zeros until it is long enough for a decoder to accept `count` elements.
 pub(super) fn padded(mut payload: Vec<u8>, count: u64, most_per_byte: u64) -> Vec<u8> {
     let least = count.div_ceil(most_per_byte).saturating_sub(1);
     payload.resize(payload.len().max(least as usize), 0);

@@ -20,7 +20,7 @@ pub(super) fn tried(hierarchy: &Hierarchy, options: &EncodeOptions) -> impl Iter
     tried.iter().map(|&steps| plan(hierarchy, options.quantization_bits, options.steps_per_edge.or(steps)))
 }
 
-/// At most so many schedules a hierarchy has.
+/// The most schedules that a hierarchy has.
 pub(super) fn num_tried(options: &EncodeOptions) -> usize {
     steps_tried(options).len()
 }
@@ -30,7 +30,7 @@ fn steps_tried(options: &EncodeOptions) -> &'static [Option<f64>] {
 }
 
 /// Each split comes with the bits its level needs; what is missing then follows the last split.
-/// Without a split there is nothing to come later for.
+/// Without a split all bits are in the base mesh.
 ///
 /// With `steps_per_edge` a level needs as many bits as make its mean edge that many grid steps long.
 /// Else it needs as many as keep the error of rounding (a twelfth of the squared step) below

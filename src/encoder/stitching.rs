@@ -14,7 +14,7 @@ pub(super) struct StitchingWriter<'a> {
     roots: Vec<u32>,
     /// Vertices before the present pass.
     num_seen: usize,
-    /// For each joined vertex whether it has come.
+    /// For each stitched vertex, whether a pass has added it.
     has_come: BitVec,
 }
 

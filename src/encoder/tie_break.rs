@@ -15,7 +15,7 @@ pub(super) struct Signatures {
 }
 
 impl Signatures {
-    /// `None` if there is nothing to look at. `surface` and `loose`: what a stream keeps, in any order.
+    /// `None` if there is nothing to compare. `surface` and `loose`: what a stream keeps, in any order.
     pub(super) fn new(input: Input, surface: Elements, loose: Elements) -> Option<Self> {
         let Input { mesh, attributes, options } = input;
         if attributes.list.is_empty() && !options.lossless {

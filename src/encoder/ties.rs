@@ -1,6 +1,6 @@
 //! Vertices with equal cells, distinguished by what is around them.
 //!
-//! First all vertices look at their neighbours for some rounds. What that leaves equal is distinguished by
+//! First all vertices are compared by their neighbours for some rounds. What is still equal is distinguished by
 //! splitting classes (Paige and Tarjan, *Three partition refinement algorithms*, 1987; McKay, *Practical
 //! graph isomorphism*, 1981): a vertex is marked, and only where a class of equal vertices comes apart the
 //! neighbours are looked at again. So equal pieces cost as much as they have faces, however many are at one
@@ -9,7 +9,7 @@
 use super::tie_break::mix;
 use crate::mesh::CornersAt;
 
-/// Rounds in which all vertices look at their neighbours, before it is seen whether that tells more apart;
+/// Rounds in which all vertices are compared by their neighbours, before a check whether that distinguishes more;
 /// a multiple of them at most.
 const ROUNDS: usize = 4;
 const MOST_ROUNDS: usize = 16 * ROUNDS;
@@ -95,7 +95,7 @@ fn told(next: u64, previous: u64) -> u64 {
     mix(next.rotate_left(20).wrapping_add(mix(previous)))
 }
 
-/// Classes of equal vertices, in their order: each is a range of `order`, and classes come apart in place.
+/// Classes of equal vertices, in their order: each is a range of `order`, and classes are split in place.
 struct Classes<'a> {
     triangles: &'a [[u32; 3]],
     corners: CornersAt,
@@ -166,7 +166,7 @@ impl<'a> Classes<'a> {
         }
     }
 
-    /// Lets classes come apart as long as their touched vertices differ from the others.
+    /// Splits classes as long as their touched vertices differ from the others.
     fn settle(&mut self, budget: usize) {
         let mut changed = Vec::new();
         while !self.waiting.is_empty() && self.work < budget {

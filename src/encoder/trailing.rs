@@ -45,7 +45,7 @@ fn turned_to(triangle: [u32; 3], corner: u32, first: u32) -> u32 {
 }
 
 impl Original<'_> {
-    /// Kinds and payloads of the chunks. `roots`: the stitching of the surface.
+    /// Kinds and payloads of the chunks. `roots`: for each vertex of the cut surface, the first copy of it.
     pub(super) fn trailing(&self, surface: &Written, roots: Vec<u32>) -> Vec<(u8, Vec<u8>)> {
         if self.says_nothing() {
             return Vec::new();

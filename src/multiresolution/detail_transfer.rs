@@ -116,7 +116,7 @@ fn points(mesh: &TriMesh, unit: f64) -> Vec<DVec3> {
     mesh.positions().iter().map(|&p| DVec3::from_array(p) * unit).collect()
 }
 
-/// The mesh with its vertices joined, as a decoder does: `joined` are numbered as they come.
+/// The mesh with its vertices stitched, as a decoder does: numbered in the order of their first copies.
 fn join(mesh: &TriMesh, joined: &[u32]) -> TriMesh {
     let mut positions: Vec<[f64; 3]> = Vec::new();
     for (&place, &position) in joined.iter().zip(mesh.positions()) {

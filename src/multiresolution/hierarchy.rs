@@ -135,7 +135,7 @@ impl Hierarchy {
         }
         let mesh = decoder.mesh().ok_or(EditError::Incomplete)?;
         let (fine, (joined, _)) = (mesh.to_manifold_mesh(), mesh.stitched_vertices());
-        // Joined vertices are numbered as they come.
+        // Stitched vertices are numbered in the order of their first copies.
         let num_joined = |count: usize| joined[..count].iter().max().map_or(0, |&last| last as usize + 1);
         let is_it = |count: usize| num_joined(count) == num_vertices;
         hierarchy.levels.retain(|&(count, _)| num_joined(count) >= num_vertices);

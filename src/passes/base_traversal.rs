@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 /// Parallelograms that make a difference.
 const MOST: usize = 3;
 
-/// Vertices that wait, first come, first served among those with as many parallelograms.
+/// Queue of vertices: most parallelograms first, then first in, first out.
 pub(super) struct BaseTraversal {
     is_placed: Vec<bool>,
     /// Parallelograms over known points that end at each vertex, up to [`MOST`].

@@ -55,7 +55,7 @@ pub(crate) struct PredictionModels {
     repeated: [[[Repeated; TRUST_LEVELS]; REPEATED_COUNTS]; NUM_KINDS],
 }
 
-/// How often coordinates come again: a mean, and of how many.
+/// How often coordinates repeat: a mean, and the number of samples.
 #[derive(Clone, Copy)]
 struct Repeated {
     weight: f32,

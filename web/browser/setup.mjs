@@ -81,12 +81,24 @@ export async function view(path) {
   return { url, close: () => child.kill() };
 }
 
+/** Starts a browser. Chromium sometimes crashes before it has opened a page, which says nothing of ours: three tries. */
+async function launch(profile, viewport) {
+  const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+  const args = ['--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--disable-background-networking'];
+  for (let tries = 1; ; tries += 1) {
+    try {
+      return await chromium.launchPersistentContext(profile, { executablePath, headless: true, args, viewport });
+    } catch (error) {
+      if (tries === 3) throw error;
+      console.error(`the browser did not start, try ${tries} of 3`);
+    }
+  }
+}
+
 /** Opens a page; errors of the page are collected. */
 export async function open(url, viewport = { width: 1280, height: 800 }) {
   const profile = mkdtempSync(join(tmpdir(), 'lwc-browser-'));
-  const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
-  const args = ['--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--disable-background-networking'];
-  const context = await chromium.launchPersistentContext(profile, { executablePath, headless: true, args, viewport });
+  const context = await launch(profile, viewport);
   const page = context.pages()[0] ?? (await context.newPage());
   const errors = [];
   page.on('pageerror', (error) => errors.push(String(error)));

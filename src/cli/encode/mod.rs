@@ -56,7 +56,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     report.print(ui)
 }
 
-/// What would otherwise be told of its ending, or of the output beside it.
+/// Without this check the message would be about its ending, or about the output in the same folder.
 fn check_input(path: &Path) -> Result<(), Failure> {
     input_file::check(path)?;
     if holds_stream(path) {

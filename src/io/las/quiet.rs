@@ -7,7 +7,7 @@ use std::{
 };
 
 thread_local! {
-    /// Whether a panic of this thread is expected, so that nobody need read of it.
+    /// Whether a panic of this thread is expected, so that it is not reported.
     static IS_QUIET: Cell<bool> = const { Cell::new(false) };
 }
 

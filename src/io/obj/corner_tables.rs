@@ -204,7 +204,7 @@ impl Gathered {
         Ok(())
     }
 
-    /// The attributes of all triangles, once each face with so many corners has become a fan.
+    /// The attributes of all triangles, after each face has been split into a fan.
     pub fn into_attributes(self, num_corners: &[u32], num_triangles: usize) -> Attributes {
         let has_corners = !(self.texture.values.is_empty() && self.normals.values.is_empty());
         let tables = [&self.materials, &self.groups, &self.objects, &self.smoothing];

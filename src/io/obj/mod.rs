@@ -64,7 +64,7 @@ impl Fault {
 struct Parser {
     builder: MeshBuilder,
     gathered: Gathered,
-    /// Corners that name vertices which have not come yet.
+    /// Corners that name vertices further down in the file.
     vertices: References,
     /// Of each face.
     num_corners: Vec<u32>,

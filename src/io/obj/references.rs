@@ -1,8 +1,8 @@
-//! What corners refer to, which may come later in the file.
+//! What corners refer to, which may be further down in the file.
 
 use crate::mesh::NO_ENTRY;
 
-/// References to values that had not come when they were read.
+/// References to values that had not been read yet.
 #[derive(Default)]
 pub(super) struct References {
     /// Line and index from 1, each index above the one before: of all others an earlier line has as high an index.
@@ -10,7 +10,7 @@ pub(super) struct References {
 }
 
 impl References {
-    /// The value from 0 that `word` means where `num_so_far` have come: an index from 1, or one that counts back.
+    /// The value from 0 that `word` means after `num_so_far` values: an index from 1, or one that counts back.
     ///
     /// `None` if it is not a whole number, `Some(None)` if there is no such value. A place beyond 32 bits is
     /// [`NO_ENTRY`], which [`References::first_beyond`] finds.

@@ -51,7 +51,7 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// Whether nothing speaks against this entry of an element: the truth, or that there is none.
+    /// Whether an element may have this entry: it is the true one, or there is no truth.
     pub(super) fn allows(&self, element: u32, entries: &Entries, entry: u32) -> bool {
         self.truth.is_none() || self.wanted(element, entries).is(entries, entry)
     }
