@@ -11,13 +11,13 @@
 //! # #[cfg(feature = "encoder")] {
 //! use lwc::{DecodeOptions, EncodeOptions, TriMesh};
 //!
-//! // A hilly terrain of 33 × 33 vertices.
-//! let n = 33;
-//! let height = |x: f64, y: f64| (0.3 * x).sin() * (0.2 * y).cos();
-//! let vertex = |i: u32| (f64::from(i % n), f64::from(i / n));
-//! let positions = (0..n * n).map(vertex).map(|(x, y)| [x, y, height(x, y)]).collect();
-//! let squares = (0..n * n).filter(|v| v % n + 1 < n && v / n + 1 < n);
-//! let triangles = squares.flat_map(|v| [[v, v + 1, v + n], [v + 1, v + n + 1, v + n]]).collect();
+//! # let n = 33;
+//! # let height = |x: f64, y: f64| (0.3 * x).sin() * (0.2 * y).cos();
+//! # let vertex = |i: u32| (f64::from(i % n), f64::from(i / n));
+//! # let positions = (0..n * n).map(vertex).map(|(x, y)| [x, y, height(x, y)]).collect();
+//! # let squares = (0..n * n).filter(|v| v % n + 1 < n && v / n + 1 < n);
+//! # let triangles = squares.flat_map(|v| [[v, v + 1, v + n], [v + 1, v + n + 1, v + n]]).collect();
+//! // A terrain. positions: Vec<[f64; 3]> in model units; triangles: Vec<[u32; 3]>, counter-clockwise.
 //! let mesh = TriMesh::new(positions, triangles)?;
 //!
 //! let mut options = EncodeOptions::default();
@@ -33,6 +33,8 @@
 //! ```
 //!
 //! # Refine a mesh while its bytes arrive
+//!
+//! A stream that ends early is a coarser mesh. A damaged one is an error, and the last complete mesh stays available.
 //!
 //! ```
 //! use lwc::{Decoder, Limits};
@@ -59,7 +61,10 @@
 //! - [`io`] reads and writes OBJ, PLY, STL and glTF, and reads LAS and LAZ.
 //! - [`descriptors`] has the seven descriptors, [`multiresolution`] filters, denoises and edits by levels, [`metrics`]
 //!   measures distances, [`render`] draws.
-//! - Without its default features the crate is the decoder alone. The format is described in `format/SPEC.md`.
+//! - Without default features the crate is the decoder of the surface alone. The feature `assets` adds attributes, scenes,
+//!   stitching, exact values and order; `fast` the profile fast; `encoder`, `io`, `gltf`, `las`, `metrics`, `render` and
+//!   `experiment` what their names say.
+//! - The format is described in `format/SPEC.md`, the code in `docs/architecture.md`.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 // Streams decode to the same bits everywhere because each operation on floats rounds once, to the size of its type.

@@ -3,8 +3,8 @@
 
 use super::attributes::AttributeDecoder;
 use super::forecast;
-use super::frame::TrailingKind;
 use super::refused::Refused;
+use super::stream_info::TrailingKind;
 use crate::bitstream::chunk::kind;
 use crate::bitstream::header::Grid;
 use crate::entropy::range_coder::RangeDecoder;

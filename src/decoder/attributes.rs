@@ -1,6 +1,6 @@
 //! Attributes of the mesh so far: the chunks after the passes, and predictions where these have not arrived.
 
-use super::frame::PassInfo;
+use super::stream_info::PassInfo;
 use crate::bitstream::header::Action;
 use crate::entropy::context_mixer::Mixing;
 use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeState};

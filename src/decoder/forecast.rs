@@ -2,7 +2,7 @@
 //! than its bytes earn is refused before it has begun.
 
 use super::built_with::ASSETS;
-use super::frame::{StreamInfo, TrailingKind};
+use super::stream_info::{StreamInfo, TrailingKind};
 use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::Domain;

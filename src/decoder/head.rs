@@ -1,8 +1,9 @@
 //! What comes before the passes: header chunks in, [`StreamInfo`] out (`format/SPEC.md`, section 4).
 
 use super::built_with::ASSETS;
-use super::frame::{self, AttributeInfo, Chunk, FrameReader, PassInfo, StreamInfo, TrailingInfo};
+use super::frame::{Chunk, FrameReader};
 use super::refused::{malformed, out_of_order, skip};
+use super::stream_info::{self, AttributeInfo, PassInfo, StreamInfo, TrailingInfo};
 use super::{attributes, forecast};
 use crate::bitstream::chunk::kind;
 use crate::bitstream::chunk_index::ChunkIndex;
@@ -142,16 +143,16 @@ impl Head {
     ) -> Result<(Vec<PassInfo>, Vec<TrailingInfo>), &'static str> {
         let bytes = self.declared().map_or(&[][..], |declared| &declared.bytes);
         let start = source.frames.position();
-        let passes = frame::list_passes(source.payload(), &header.grid, start, bytes);
+        let passes = stream_info::list_passes(source.payload(), &header.grid, start, bytes);
         let mut passes = passes.map_err(|bad| bad.0)?;
         if let Some(declared) = self.declared() {
             attributes::check_density(declared, &passes)?;
         }
         if let Some(payload) = self.compensation.take() {
-            frame::add_compensation(&mut passes, &payload).map_err(|bad| bad.0)?;
+            stream_info::add_compensation(&mut passes, &payload).map_err(|bad| bad.0)?;
         }
         let announced = self.announced.take().filter(|_| ASSETS).unwrap_or_default();
-        let trailing = frame::add_announced(&mut passes, &announced).map_err(|bad| bad.0)?;
+        let trailing = stream_info::add_announced(&mut passes, &announced).map_err(|bad| bad.0)?;
         Ok((passes, trailing))
     }
 }

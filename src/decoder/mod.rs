@@ -16,10 +16,11 @@ mod running;
 mod snapshot;
 mod state;
 mod stream;
+mod stream_info;
 mod update;
 
-pub use frame::{AttributeInfo, PassInfo, PassKind, StreamInfo, TrailingInfo, TrailingKind};
 pub use level_mesh::{LevelMesh, PositionUpdater};
 pub use options::DecodeOptions;
 pub use push::{Decoder, decode};
+pub use stream_info::{AttributeInfo, PassInfo, PassKind, StreamInfo, TrailingInfo, TrailingKind};
 pub use update::{Step, Update};

@@ -1,6 +1,6 @@
 //! What the caller of a decoder may choose.
 
-use super::frame::{PassInfo, PassKind};
+use super::stream_info::{PassInfo, PassKind};
 use crate::bitstream::compensation::Compensation;
 use crate::limits::Limits;
 

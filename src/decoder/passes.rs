@@ -1,8 +1,8 @@
 //! One pass after the other, applied to the mesh.
 
-use super::frame::{PassInfo, PassKind};
 use super::running::Running;
 use super::state::PassDecoder;
+use super::stream_info::{PassInfo, PassKind};
 use crate::bitstream::header::Action;
 use crate::bitstream::profile::Profile;
 use crate::entropy::context_mixer::Mixing;

@@ -1,11 +1,11 @@
 //! The push decoder: bytes in, refined meshes out.
 
 use super::attributes::AttributeDecoder;
-use super::frame::StreamInfo;
 use super::level_mesh::LevelMesh;
 use super::options::DecodeOptions;
 use super::snapshot::Snapshot;
 use super::stream::StreamingDecoder;
+use super::stream_info::StreamInfo;
 use super::update::{Step, Update};
 use crate::error::DecodeError;
 use crate::limits::Limits;
@@ -43,10 +43,12 @@ impl Decoder {
     }
 
     /// Takes the next bytes of the stream, however they are cut, and applies every pass that is
-    /// complete. The ranges of each update refer to the mesh after the call.
+    /// complete. The ranges of each update refer to the mesh after the call. Bytes after the end of the stream, or
+    /// of the wanted level, are ignored.
     ///
     /// # Errors
-    /// If the stream is damaged, not a stream, or beyond the limits. The finest complete mesh stays
+    /// If the stream is damaged, not a stream, or beyond the limits, or if the floating-point environment of the
+    /// thread is not the default one. The finest complete mesh stays
     /// available; the decoder takes no more bytes. Passes finished in the same call are then not
     /// reported, see [`Decoder::passes_done`].
     pub fn push(&mut self, bytes: &[u8]) -> Result<Vec<Update>, DecodeError> {
@@ -81,11 +83,11 @@ impl Decoder {
         }
     }
 
-    /// As [`Decoder::step`], but does at most about `work` units of a pass and goes on with it in the
+    /// As [`Decoder::step`], but does at most about `work` units of a pass (at least 1) and goes on with it in the
     /// next call: for threads that have other things to do in time. Until the pass is finished all that
     /// is seen of the mesh is that of the pass before.
     ///
-    /// A unit is the work of an edge or a triangle, a fraction of a microsecond. The last thing done in a
+    /// A unit is the work of an edge or a triangle, about a tenth of a microsecond. The last thing done in a
     /// call may be more than is left: a vertex with all its edges, a copy of an array, which
     /// counts one unit for 64 numbers, or a whole chunk of stitching or after the last pass. Only the links of a base mesh are
     /// not counted.
@@ -178,7 +180,8 @@ impl Decoder {
 /// A stream that ends early gives all that its bytes tell, see [`Decoder::preview`].
 ///
 /// # Errors
-/// If the stream is damaged, beyond the limits, or ends before its base mesh.
+/// If the stream is damaged, beyond the limits, or ends before its base mesh. A [`Decoder`] keeps the finest mesh before
+/// the damage; this function gives only the error.
 pub fn decode(bytes: &[u8], options: DecodeOptions) -> Result<TriMesh, DecodeError> {
     let mut decoder = Decoder::with_options(options);
     decoder.push(bytes)?;

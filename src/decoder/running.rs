@@ -1,8 +1,8 @@
 //! A pass amid its work: it goes on where it was, slice by slice.
 
 use super::built_with::STREAMS;
-use super::frame::{PassInfo, PassKind};
 use super::state::{Models, PassDecoder};
+use super::stream_info::{PassInfo, PassKind};
 use crate::bitstream::header::Action;
 use crate::bitstream::profile::Profile;
 use crate::entropy::context_mixer::Mixing;

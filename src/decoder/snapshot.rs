@@ -1,9 +1,9 @@
 //! The mesh and its attributes as they are now, after a pass or with the beginning of the next one.
 
 use super::built_with::ASSETS;
-use super::frame::{PassInfo, PassKind};
 use super::level_mesh::LevelMesh;
 use super::stream::StreamingDecoder;
+use super::stream_info::{PassInfo, PassKind};
 use crate::bitstream::chunk::kind;
 use crate::bitstream::profile::Profile;
 use crate::mesh::{Attributes, TriMesh};

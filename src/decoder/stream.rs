@@ -1,14 +1,19 @@
-//! Reads chunk after chunk: which one is allowed next, and what it changes.
+//! Reads chunk after chunk: which one is allowed next, and what it changes. The order of a stream:
+//!
+//! ```text
+//! H and any of p d n m c t | L | B, S or R, then a if the pass has values, then g if t lists it | … | i x v o m if t lists them
+//! ```
 
 use super::assemble::{Extras, NewChunk};
 use super::attributes::{self, AttributeDecoder};
 use super::built_with::ASSETS;
-use super::frame::{Chunk, FrameReader, PassInfo, PassKind, StreamInfo};
+use super::frame::{Chunk, FrameReader};
 use super::head::{Head, Source};
 use super::options::DecodeOptions;
 use super::refused::{malformed, out_of_order, skip};
 use super::running::Running;
 use super::state::PassDecoder;
+use super::stream_info::{PassInfo, PassKind, StreamInfo};
 use super::update::{Step, Update};
 use super::{environment, forecast};
 use crate::bitstream::chunk::{self, kind};
@@ -78,7 +83,7 @@ impl StreamingDecoder {
         Ok(())
     }
 
-    /// Goes on until a pass is finished, or the work is used up.
+    /// Goes on until a pass is finished, the work is used up, or bytes are missing.
     pub(super) fn step(&mut self, work: &mut WorkBudget) -> Result<Step, DecodeError> {
         if self.has_failed {
             return Err(DecodeError::Failed);

@@ -1,6 +1,6 @@
 //! What a call of the decoder came to.
 
-use super::frame::PassInfo;
+use super::stream_info::PassInfo;
 use std::ops::Range;
 
 /// What one finished pass changed.

@@ -81,7 +81,7 @@ pub fn encode_with_attributes(
     let original = Original { input, on_grid: &on_grid, quantised: &quantised };
     let bytes = smallest_stream(surface, original, features.as_ref(), progress);
     // The encoder's own bytes always hold a header.
-    let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(bytes.len()))?;
+    let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(mesh.num_vertices()))?;
     Ok(Encoded { bytes, info, repair: on_grid.repair, values_dropped: quantised.values_dropped })
 }
 

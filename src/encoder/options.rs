@@ -10,27 +10,27 @@ use crate::simplification::hierarchy::MAX_LEVELS;
 use crate::simplification::partition::Partition;
 use crate::simplification::vertex_selection::Optimize;
 
-/// How to encode. `Default` gives the defaults named below.
+/// How to encode: change fields of the `Default`, whose values are named below. The encoder checks the ranges.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EncodeOptions {
     /// Saliency of vertices. Default harris3d.
     pub descriptor: Descriptor,
-    /// Window of the descriptor at the finest level. Default 4 rings, radius 3 mean edges.
+    /// Window of the descriptor at the finest level: 1 to 64 rings, radius above 0 to 1e6 mean edges. Default 4 rings, radius 3 mean edges.
     pub window: Window,
-    /// Factor of the radius from each level to the next coarser one. Default 1.5.
+    /// Factor of the radius from each level to the next coarser one, 1 to 16. Default 1.5.
     pub growth: f64,
     /// Attributes that the descriptor uses in addition to positions, if it is pca or pca-qem. Default none.
     pub descriptor_attributes: Vec<FeatureChoice>,
     /// Bits per coordinate, 1 to 30. Default 12.
     pub quantization_bits: u32,
-    /// Number of levels above the base mesh; `None` goes on until the base is small. Default `None`.
+    /// Number of levels above the base mesh, 0 to 128; `None` goes on until the base is small. Default `None`.
     pub levels: Option<u32>,
     /// How odd vertices are chosen and removed. Default weighted error.
     pub partition: Partition,
     /// What the partition by weighted error aims at. Default balanced.
     pub optimize: Optimize,
-    /// Grid steps to the mean edge of a level, from which its quantization bits follow; `None` follows the
+    /// Grid steps to the mean edge of a level, 0.5 to 1e9, from which its quantization bits follow; `None` follows the
     /// error of each level instead, which makes better prefixes. Default `None`.
     pub steps_per_edge: Option<f64>,
     /// Bits of each of the two coordinates of a normal on the octahedron, 2 to 30. Default 8.
@@ -54,10 +54,10 @@ pub struct EncodeOptions {
     /// How the passes are coded; `None`: max where only the size of the file counts ([`Optimize::Size`]), else small.
     /// Default `None`.
     pub profile: Option<Profile>,
-    /// Time that may be spent, 0 to 9. Below [`LOW_EFFORT`](Self::LOW_EFFORT) the descriptor does not affect
-    /// the partition by weighted error, which takes a third less time; from
-    /// [`HIGH_EFFORT`](Self::HIGH_EFFORT) on several ways are tried where only the size of the file counts
-    /// ([`Optimize::Size`]), with 9 all of them. Default 5.
+    /// Time that may be spent, 0 to 9. Below [`LOW_EFFORT`](Self::LOW_EFFORT) the partition by weighted error ignores the
+    /// descriptor, which takes a third less time, and one stream is made. From there on [`Optimize::Size`] also tries all
+    /// bits at once and a mesh without levels, from [`HIGH_EFFORT`](Self::HIGH_EFFORT) on two more ways to spread the bits,
+    /// with 9 other largest valences; the smallest stream is kept. Default 5.
     pub effort: u32,
 }
 
@@ -90,7 +90,7 @@ impl Default for EncodeOptions {
 impl EncodeOptions {
     /// Below this effort the descriptor does not affect the partition by weighted error.
     pub const LOW_EFFORT: u32 = 3;
-    /// From this effort on several ways are tried.
+    /// From this effort on more ways to spread the bits over the passes are tried.
     pub const HIGH_EFFORT: u32 = 7;
     /// From this effort on other partitions are tried as well.
     const HIGHEST_EFFORT: u32 = 9;
@@ -194,15 +194,15 @@ pub struct Encoded {
     pub info: StreamInfo,
     /// What had to be cut or dropped.
     pub repair: RepairReport,
-    /// Rows of attributes that are not finite: what has one counts as having no value.
+    /// Entries of attributes that are not finite: elements with one count as having no value.
     pub values_dropped: usize,
 }
 
 /// How far an encoder is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// What it does now.
+    /// What it does now: `levels` or `passes`, which alternate if several ways are tried.
     pub stage: &'static str,
-    /// Share of the whole work done, 0 to 1.
+    /// Share of the whole work done, 0 to 1. It never falls, and ends at 1.
     pub fraction: f64,
 }
