@@ -134,26 +134,27 @@ impl ResidualModel {
         let mixture = mixture.seen_from(0.0, !positive);
         let magnitude = residual.unsigned_abs();
 
-        // Exponent, one step at a time: is the magnitude at least 2^(exponent + 1)? The magnitude
-        // lies between `low` and `high`, whose masses above are known.
+        // Is the magnitude, at least 2^exponent, also at least 2^(exponent + 1)? `outer` and `beyond` are the masses above
+        // these bounds. Far from all experts they may be 0 and a quotient infinite or NaN: `stretch_real` and the cast
+        // below map both to the same entry on both sides (SPEC 6.4).
         let mut exponent = 0_u32;
-        let mut above_low = if positive { up } else { down };
-        let mut above_high;
+        let mut outer = if positive { up } else { down };
+        let mut beyond;
         loop {
-            above_high = mixture.above(tables, (2_u64 << exponent) as f32 - 0.5);
+            beyond = mixture.above(tables, (2_u64 << exponent) as f32 - 0.5);
             let e = exponent as usize;
             let more = self.more.code(
                 coder,
                 tables,
                 [by_scale * EXPONENTS + e, contexts[0] * EXPONENTS + e, contexts[1] * EXPONENTS + e],
-                [tables.stretch_real(above_high / above_low)],
+                [tables.stretch_real(beyond / outer)],
                 kind * EXPONENTS + e,
                 magnitude >= 2 << exponent,
             );
             if !more {
                 break;
             }
-            above_low = above_high;
+            outer = beyond;
             exponent += 1;
             if exponent as usize == EXPONENTS {
                 return None;
@@ -165,27 +166,27 @@ impl ResidualModel {
         for depth in 0..exponent {
             let middle = low + (1_u64 << (exponent - 1 - depth));
             let bit = magnitude >= middle;
-            let above_middle = mixture.above(tables, middle as f32 - 0.5);
-            let p_upper = (above_middle - above_high) / (above_low - above_high);
+            let upper = mixture.above(tables, middle as f32 - 0.5);
+            let share = (upper - beyond) / (outer - beyond);
             let upper_half = if depth < MODELLED_MANTISSA {
                 let d = depth as usize * EXPONENTS + exponent as usize;
                 self.mantissa.code(
                     coder,
                     tables,
                     [d * SCALE_BUCKETS + bucket, d * NUM_KINDS + kind],
-                    [tables.stretch_real(p_upper)],
+                    [tables.stretch_real(share)],
                     depth as usize,
                     bit,
                 )
             } else {
-                let p1 = (p_upper * PROBABILITY_ONE as f32) as u32;
+                let p1 = (share * PROBABILITY_ONE as f32) as u32;
                 coder.code(bit, p1.clamp(PROBABILITY_ONE / 8, PROBABILITY_ONE / 2))
             };
             if upper_half {
                 low = middle;
-                above_low = above_middle;
+                outer = upper;
             } else {
-                above_high = above_middle;
+                beyond = upper;
             }
         }
         let magnitude = low as i64;

@@ -10,8 +10,11 @@ const BLOCK: usize = 1 << 12;
 
 /// The vertices and triangles of one level, renumbered without gaps.
 pub(crate) struct Level {
+    /// The vertex of each place.
     pub(crate) vertices: Vec<u32>,
+    /// The slot of each triangle.
     pub(crate) faces: Vec<u32>,
+    /// The triangles, by places.
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 

@@ -1,6 +1,10 @@
 //! From M^L down: which vertices of a level are removed, how their holes are closed, and the record from
 //! which an encoder restores them. [`hierarchy`] goes from level to level, [`partition`] removes the odd
 //! vertices of one.
+//!
+//! Three kinds of indices are `u32` here. A *vertex* is an index into the surface, which it keeps through all levels. A
+//! *place* is an index into [`level::Level::vertices`]. A *slot* is an index into the triangles of the surface, some of
+//! which are free.
 
 pub(crate) mod bucket_queue;
 pub(crate) mod canonical;

@@ -258,11 +258,11 @@ fn leave_seams(
     }
 }
 
-/// Those of `free` that go one after the other if each rules out its neighbours, the ones first whose
-/// valence less some of the share of their neighbours that are next to a removed vertex already is least,
-/// ties by index.
+/// Chooses vertices of `free` greedily, no two of them neighbours. First goes the one with the least valence, less a
+/// share for the neighbours that already touch a chosen vertex; ties by index.
 fn closely_packed(rings: &Rings, free: &[u32]) -> Vec<u32> {
     let largest = free.iter().map(|&v| rings.valence(v)).max().unwrap_or(0);
+    debug_assert!(largest < usize::from(Packing::CHANGED));
     let classes = PackingClasses::new(largest);
     // For each free vertex, how many of its neighbours are next to a removed vertex.
     let mut states = vec![Packing::STAYS; rings.len()];
@@ -317,7 +317,8 @@ impl Packing {
     const STAYS: Self = Self(u8::MAX);
     /// It is removed or next to a removed vertex.
     const TOUCHED: Self = Self(u8::MAX - 1);
-    /// Added to the number until the queue knows of it.
+    /// Added to the number until the queue knows of it. The number is at most the valence of a free vertex, which stays
+    /// below this bit: see `Thinning::max_valence`.
     const CHANGED: u8 = 1 << 6;
 
     fn is_free(self) -> bool {

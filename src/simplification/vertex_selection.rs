@@ -41,11 +41,11 @@ pub(crate) struct Thinning {
     outlier: Option<f64>,
     /// Largest valence that goes.
     pub(crate) max_valence: u32,
-    /// How much worse (squared distance) a hole may be closed to be cheaper to code.
+    /// How many times the squared deviation of the best hole a hole that is cheaper to code may have; ∞: cost alone counts.
     pub(crate) tolerance: f64,
 }
 
-/// On scans about a fifth of the vertices are beyond it. Where creases bound flat parts, almost all of the
+/// On scans about a fifth of the vertices exceed this multiple of the median. Where creases bound flat parts, almost all of the
 /// error is along the creases: more of them stay, and the flat parts are thinned out first.
 const OUTLIER: f64 = 3.5;
 /// Largest share that stays for that reason.
@@ -93,9 +93,9 @@ impl Thinning {
 /// Levels with more than this share of all vertices are fine.
 const FINE_SHARE: f64 = 0.7;
 
-/// Up to this many vertices the descriptor is evaluated everywhere; of more, at least this many give its
-/// ranks.
+/// Up to this many vertices the descriptor is evaluated everywhere.
 const LARGE: usize = 8192;
+/// In larger levels at least this many vertices give the ranks of the descriptor.
 const SAMPLE: usize = 4096;
 /// Ranks and the bound of saliency are known that well from a sample.
 const SLACK: f64 = 1.1;
@@ -104,6 +104,7 @@ const WEIGHT: f64 = 2.0;
 
 /// Saliency of the vertices of a level, and how many of them may go.
 pub(crate) struct Saliency {
+    /// By place: squared distance times area, weighted by the rank of the descriptor; empty if all may go.
     of: Vec<f64>,
     num_free: usize,
 }
@@ -183,8 +184,9 @@ impl Saliency {
     }
 }
 
-/// By the share of the vertices whose descriptor is less.
+/// `WEIGHT`^(2 rank − 1), from 1 / `WEIGHT` to `WEIGHT`; `rank` is the share of the vertices whose descriptor is less.
 fn weight(rank: f64) -> f64 {
+    const { assert!(WEIGHT == 2.0) };
     libm::exp2(2.0 * rank - 1.0)
 }
 
