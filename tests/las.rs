@@ -105,6 +105,106 @@ fn points_of_all_formats_become_a_surface() {
     }
 }
 
+/// The place of a record, whose flags are in byte 15.
+fn record(bytes: &[u8], index: usize) -> usize {
+    let start = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+    start + index * usize::from(u16::from_le_bytes([bytes[105], bytes[106]]))
+}
+
+#[test]
+fn withheld_points_are_left_out_and_counted() {
+    for (format, flag) in [(3, 0x80), (7, 0x04)] {
+        let mut bytes = las(format, &SQUARE);
+        let at = record(&bytes, 5) + 15;
+        bytes[at] |= flag;
+        let file = read(&bytes).unwrap();
+        assert_eq!((file.mesh.num_vertices(), file.mesh.num_triangles()), (4, 2), "format {format}");
+        assert_eq!((file.report.points_withheld, file.report.points_left_out), (1, 1));
+    }
+}
+
+#[test]
+fn classes_and_long_edges_are_left_out() {
+    let file = read_with(&las(3, &SQUARE), |options| options.classes = Some(vec![2, 9]));
+    assert_eq!(named(&file, "classification").values, Values::U8(vec![2, 2, 2, 9]));
+
+    // Two groups of points, 10 units apart.
+    let points: Vec<Point> = (0..8)
+        .map(|k| ([k % 2 * 100, k / 2 % 2 * 100, 0], k / 4))
+        .map(|([x, y, z], far)| ([x + far * 1000, y, z], 1, 1, 2))
+        .collect();
+    let all = read(&las(0, &points)).unwrap();
+    assert_eq!(all.mesh.num_triangles(), 6);
+    let file = read_with(&las(0, &points), |options| options.longest_edge = Some(2.0));
+    assert_eq!((file.mesh.num_vertices(), file.mesh.num_triangles()), (8, 4));
+}
+
+#[test]
+fn colours_of_8_bits_in_16_are_8_bits() {
+    let mut bytes = las(2, &SQUARE);
+    for k in 0..SQUARE.len() {
+        let at = record(&bytes, k) + 20;
+        bytes[at..at + 6].copy_from_slice([10u16, 255, 128].map(u16::to_le_bytes).as_flattened());
+    }
+    let file = read(&bytes).unwrap();
+    let colour = file.attributes.find(Semantic::Color(0)).unwrap();
+    assert!(colour.is_normalized);
+    assert_eq!(colour.values, Values::U8([10, 255, 128].repeat(5)));
+}
+
+/// The file with these fields after each record, each with the type of its description, a name, its bytes in record k
+/// and, if it has one, a scale.
+fn with_extra_bytes(bytes: &[u8], fields: &[(u8, &str, fn(u8) -> Vec<u8>, Option<f64>)]) -> Vec<u8> {
+    let (start, record_bytes) = (record(bytes, 0), record(bytes, 1) - record(bytes, 0));
+    let mut head = bytes[..start].to_vec();
+    head.extend([0; 2]);
+    head.extend(b"LASF_Spec\0\0\0\0\0\0\0");
+    head.extend(4u16.to_le_bytes());
+    head.extend((192 * fields.len() as u16).to_le_bytes());
+    head.extend([0; 32]);
+    for (code, name, _, scale) in fields {
+        let mut description = [0; 192];
+        description[2] = *code;
+        description[3] = if scale.is_some() { 8 } else { 0 };
+        description[4..4 + name.len()].copy_from_slice(name.as_bytes());
+        description[112..120].copy_from_slice(&scale.unwrap_or(0.0).to_le_bytes());
+        head.extend(description);
+    }
+    let new_start = head.len() as u32;
+    head[96..100].copy_from_slice(&new_start.to_le_bytes());
+    let more: usize = fields.iter().map(|(_, _, value, _)| value(0).len()).sum();
+    head[105..107].copy_from_slice(&((record_bytes + more) as u16).to_le_bytes());
+    for (k, record) in bytes[start..].chunks_exact(record_bytes).enumerate() {
+        head.extend(record);
+        fields.iter().for_each(|(_, _, value, _)| head.extend(value(k as u8)));
+    }
+    head
+}
+
+#[test]
+fn extra_bytes_and_near_infrared_are_kept() {
+    let plain = las(8, &SQUARE);
+    let height: fn(u8) -> Vec<u8> = |k| (f32::from(k) * 0.5).to_le_bytes().to_vec();
+    let width: fn(u8) -> Vec<u8> = |k| (-i16::from(k)).to_le_bytes().to_vec();
+    let label: fn(u8) -> Vec<u8> = |k| (u64::from(k) << 33).to_le_bytes().to_vec();
+    let fields =
+        [(9, "height above", height, None), (4, "width", width, Some(0.25)), (7, "label", label, None)];
+    let file = read(&with_extra_bytes(&plain, &fields)).unwrap();
+    // The third point, at index 1 of the file, lies above another.
+    assert_eq!(named(&file, "nir").values, Values::U16(vec![0; 5]));
+    assert_eq!(named(&file, "height_above").values, Values::F32(vec![0.0, 1.0, 1.5, 2.0, 2.5]));
+    assert_eq!(named(&file, "width").values, Values::F64(vec![0.0, -0.5, -0.75, -1.0, -1.25]));
+    let labels = [0, 2, 3, 4, 5].map(|k| f64::from(k) * 2f64.powi(33));
+    assert_eq!(named(&file, "label").values, Values::F64(labels.to_vec()));
+    assert_eq!(file.report.ignored, ["returns, angles, times and sources of points"]);
+
+    let pairs: fn(u8) -> Vec<u8> = |k| vec![k, 2 * k];
+    let bytes = with_extra_bytes(&plain, &[(11, "pairs", pairs, None), (1, "odd", |k| vec![k], None)]);
+    let file = read(&bytes).unwrap();
+    assert_eq!(named(&file, "odd").values, Values::U8(vec![0, 2, 3, 4, 5]));
+    assert_eq!(file.report.ignored, ["returns, angles, times and sources of points", "extra bytes"]);
+}
+
 #[test]
 fn returns_and_cells_choose_points() {
     let bytes = las(3, &SQUARE);

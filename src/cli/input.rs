@@ -74,6 +74,10 @@ fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
         let faces = counted(report.faces_skipped, "face", "faces");
         ui.warn(name, &format!("{faces} of fewer than three corners left out"));
     }
+    if report.points_withheld > 0 {
+        let points = counted(report.points_withheld, "point", "points");
+        ui.warn(name, &format!("{points} left out: flagged as withheld in the file"));
+    }
     if report.points_left_out > 0 {
         let points = counted(report.points_left_out, "point", "points");
         ui.warn(name, &format!("{points} left out: above others, or not wanted"));

@@ -44,7 +44,7 @@ impl<'a> LevelMesh<'a> {
         self.triangles
     }
 
-    /// Grid cells of the vertices, n × 3, each below 2^[`precision`](Self::precision).
+    /// Grid cells of the vertices, n × 3, each below 2^[`quantization_bits`](Self::quantization_bits).
     pub fn quantized_positions(&self) -> &'a [[i32; 3]] {
         self.cells
     }

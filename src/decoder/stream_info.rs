@@ -222,7 +222,7 @@ impl StreamInfo {
     }
 
     /// Most units of work that decoding takes, as [`Decoder::work_done`](crate::Decoder::work_done) counts
-    /// them, without isolated vertices and degenerate faces. See [`Limits::max_work`].
+    /// them, without isolated vertices and degenerate faces. See [`Limits::max_work`](crate::Limits::max_work).
     pub fn work(&self) -> u64 {
         self.work
     }

@@ -387,6 +387,8 @@ pub fn read_terrain(data: &[u8]) {
         last_returns_only: choice & 1 != 0,
         cell_size: (choice & 2 != 0).then_some(f64::from(choice)),
         max_points: (choice & 4 != 0).then_some(usize::from(choice)),
+        classes: (choice & 8 != 0).then(|| vec![choice >> 4, 2]),
+        longest_edge: (choice & 16 != 0).then_some(f64::from(choice)),
     };
     let Ok(file) = io::read_terrain_bytes(data, &options) else { return };
     for attribute in &file.attributes.list {

@@ -27,6 +27,8 @@ pub struct ReadReport {
     /// LAS only: points that are no vertices, because they lie above another, are not the last return, or were
     /// thinned out.
     pub points_left_out: usize,
+    /// LAS only: points flagged as withheld, which counts as deleted. They are left out.
+    pub points_withheld: usize,
     /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
     /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`).
     pub ignored: Vec<String>,

@@ -174,6 +174,13 @@ pub struct Terrain {
     /// Keep at most N points, spread evenly, e.g. 500K.
     #[arg(long, value_name = "N", value_parser = quantity::count, allow_negative_numbers = true)]
     pub max_points: Option<u32>,
+    /// Keep only points of these classes, such as 2,9 for ground and water. Default: all.
+    #[arg(long, value_name = "CLASS,…", value_delimiter = ',')]
+    pub classes: Option<Vec<u8>>,
+    /// Leave out triangles with a longer edge in the plane, in units of the file, above 0, at most 1e9.
+    #[arg(long, value_name = "LENGTH", value_parser = quantity::number(f64::MIN_POSITIVE, 1e9))]
+    #[arg(allow_negative_numbers = true)]
+    pub longest_edge: Option<f64>,
 }
 
 impl Terrain {
@@ -183,6 +190,8 @@ impl Terrain {
         options.last_returns_only = self.last_returns;
         options.cell_size = self.thin;
         options.max_points = self.max_points.map(|points| points as usize);
+        options.classes.clone_from(&self.classes);
+        options.longest_edge = self.longest_edge;
         Some(options).filter(|options| *options != TerrainOptions::default())
     }
 }

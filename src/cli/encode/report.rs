@@ -108,6 +108,7 @@ impl Report<'_> {
             "faces_skipped": read.faces_skipped,
             "corners_welded": read.corners_welded,
             "points_left_out": read.points_left_out,
+            "points_withheld": read.points_withheld,
             "ignored": self.file.report.ignored.iter().chain(&self.left_out).collect::<Vec<_>>(),
             "attributes": passes::attributes_to_json(info, &[]),
             "degenerate_triangles": repair.degenerate_triangles,

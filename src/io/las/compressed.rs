@@ -4,7 +4,7 @@
 
 use super::{
     gps_time::GpsTimeSkipper,
-    header::{Fields, Header},
+    header::{Fields, Header, variable_records},
     quiet::without_panic,
 };
 use crate::io::{Place, ReadError};
@@ -49,22 +49,14 @@ pub(super) fn unpack(header: &Header, bytes: &[u8], take: impl FnMut(&[u8])) -> 
     .map_err(|cause| damaged(header.data_offset, &cause))
 }
 
-/// Finds what says how the points are compressed, among the variable length records between header and points.
+/// Finds what says how the points are compressed.
 fn find_record(header: &Header, bytes: &[u8]) -> Result<Compression, ReadError> {
-    const HEAD_BYTES: usize = 54;
-    let fields = Fields(bytes);
-    let mut at = header.header_bytes;
-    while at + HEAD_BYTES <= header.data_offset {
-        let length = usize::from(fields.u16(at + 20)?);
-        let data = bytes.get(at + HEAD_BYTES..at + HEAD_BYTES + length);
-        let is_ours =
-            fields.bytes::<16>(at + 2)?.starts_with(b"laszip encoded") && fields.u16(at + 18)? == 22204;
-        if let (Some(data), true) = (data, is_ours) {
-            return read_record(data).map_err(|cause| damaged(at, &cause));
-        }
-        at += HEAD_BYTES + length;
-    }
-    Err(ReadError::syntax(Place::Byte(header.header_bytes), "compressed, but it does not say how"))
+    let mut records = variable_records(header, bytes);
+    let Some(record) = records.find(|r| r.user.starts_with(b"laszip encoded") && r.id == 22204) else {
+        let place = Place::Byte(header.header_bytes);
+        return Err(ReadError::syntax(place, "compressed, but it does not say how"));
+    };
+    read_record(record.data).map_err(|cause| damaged(record.at, &cause))
 }
 
 fn read_record(data: &[u8]) -> Result<Compression, String> {
@@ -155,8 +147,11 @@ fn unpack_layers(
     let kept = DecompressionSelection::xy_returns_channel()
         .decompress_z()
         .decompress_classification()
+        .decompress_flags()
         .decompress_intensity()
-        .decompress_rgb();
+        .decompress_rgb()
+        .decompress_nir()
+        .decompress_extra_bytes();
     let mut unpacker =
         LasZipDecompressor::selective(source, laz.record.clone(), kept).map_err(|error| error.to_string())?;
     pieces.each(|piece| unpacker.decompress_many(piece).map_err(|error| error.to_string()), take)

@@ -46,6 +46,33 @@ impl Fields<'_> {
     }
 }
 
+/// One of the variable length records between header and points.
+pub(super) struct VariableRecord<'a> {
+    /// Place in the file.
+    pub at: usize,
+    /// Who defined it, padded with zeros.
+    pub user: &'a [u8],
+    pub id: u16,
+    pub data: &'a [u8],
+}
+
+/// The variable length records, up to the first one that does not fit.
+pub(super) fn variable_records<'a>(
+    header: &Header,
+    bytes: &'a [u8],
+) -> impl Iterator<Item = VariableRecord<'a>> + use<'a> {
+    const HEAD_BYTES: usize = 54;
+    let (mut at, end) = (header.header_bytes, header.data_offset);
+    std::iter::from_fn(move || {
+        let head = bytes.get(at..end)?.get(..HEAD_BYTES)?;
+        let u16_at = |place: usize| u16::from_le_bytes([head[place], head[place + 1]]);
+        let data = bytes.get(at + HEAD_BYTES..)?.get(..usize::from(u16_at(20)))?;
+        let record = VariableRecord { at, user: &head[2..18], id: u16_at(18), data };
+        at += HEAD_BYTES + data.len();
+        Some(record)
+    })
+}
+
 /// Where the record of a format has its colour, if it has one, and the least bytes of a record.
 pub(super) fn layout(format: u8) -> Option<(Option<usize>, usize)> {
     Some(match format {

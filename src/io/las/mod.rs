@@ -4,6 +4,7 @@
 //! counter-clockwise from there. Overhangs are not for a surface like this: among several points above each
 //! other one remains.
 
+mod columns;
 mod compressed;
 mod gps_time;
 mod header;
@@ -13,6 +14,7 @@ mod thin;
 
 use super::{MeshFile, Place, ReadError, builder::MeshBuilder};
 use crate::mesh::{Attribute, Domain, Semantic, Values};
+use columns::Column;
 use points::{Cloud, Point};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
@@ -27,6 +29,11 @@ pub struct TerrainOptions {
     pub cell_size: Option<f64>,
     /// At most this many points, by squares as large as that takes. Default: all.
     pub max_points: Option<usize>,
+    /// Only points of these classes, such as 2 (ground) and 9 (water). Default: all classes.
+    pub classes: Option<Vec<u8>>,
+    /// No triangle with a longer edge in the plane, in units of the file, positive: they close bays and gaps. Default: all
+    /// triangles of the convex hull.
+    pub longest_edge: Option<f64>,
 }
 
 /// Axes of the plane may differ in scale by this factor; any real file has the same for both.
@@ -34,8 +41,12 @@ const MAX_SCALE_RATIO: f64 = 1000.0;
 
 /// Reads and triangulates.
 pub(super) fn read(bytes: &[u8], options: &TerrainOptions) -> Result<MeshFile, ReadError> {
-    let Cloud { mut points, scale, offset, has_colour } = points::read(bytes)?;
+    let cloud = points::read(bytes)?;
+    let Cloud { mut points, scale, offset, .. } = cloud;
     let num_points = points.len();
+    if let Some(classes) = &options.classes {
+        points.retain(|point| classes.contains(&point.classification));
+    }
     if options.last_returns_only {
         points.retain(|point| point.is_last_return);
     }
@@ -52,15 +63,30 @@ pub(super) fn read(bytes: &[u8], options: &TerrainOptions) -> Result<MeshFile, R
 
     let mut builder = MeshBuilder::for_file(bytes.len());
     builder.report.points_left_out = num_points - points.len();
+    builder.report.points_withheld = cloud.num_withheld;
     builder.triangles = triangulate(&points, scale)?;
+    if let Some(longest) = options.longest_edge {
+        builder.triangles.retain(|&triangle| longest_edge(triangle, &points, scale) <= longest);
+    }
     let position = |point: &Point| [0, 1, 2].map(|k| f64::from(point.grid[k]) * scale[k] + offset[k]);
     builder.positions = points.iter().map(position).collect();
-    builder.attributes.list = attributes(&points, has_colour);
+    builder.attributes.list = attributes(&points, cloud.has_colour, &cloud.columns);
     builder.report.ignore("returns, angles, times and sources of points");
+    if cloud.has_other_bytes {
+        builder.report.ignore("extra bytes");
+    }
     builder.finish()
 }
 
-fn attributes(points: &[Point], has_colour: bool) -> Vec<Attribute> {
+/// The length in the plane of the longest edge of a triangle.
+fn longest_edge(triangle: [u32; 3], points: &[Point], scale: [f64; 3]) -> f64 {
+    let corner = |v: u32| [0, 1].map(|k| f64::from(points[v as usize].grid[k]) * scale[k]);
+    let length = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]);
+    let [a, b, c] = triangle.map(corner);
+    length(a, b).max(length(b, c)).max(length(c, a))
+}
+
+fn attributes(points: &[Point], has_colour: bool, columns: &[Column]) -> Vec<Attribute> {
     let of_vertices =
         |name: &str, semantic, n, values| Attribute::new(name, semantic, Domain::Vertex, n, values);
     let classes = Values::U8(points.iter().map(|point| point.classification).collect());
@@ -70,11 +96,18 @@ fn attributes(points: &[Point], has_colour: bool) -> Vec<Attribute> {
         of_vertices("intensity", Semantic::Generic, 1, intensities),
     ];
     if has_colour {
-        let colours = Values::U16(points.iter().flat_map(|point| point.colour).collect());
-        let colour = of_vertices("red green blue", Semantic::Color(0), 3, colours);
+        let colour = of_vertices("red green blue", Semantic::Color(0), 3, colours(points));
         list.push(Attribute { is_normalized: true, ..colour });
     }
+    list.extend(columns.iter().map(|column| column.attribute(points.iter().map(|point| point.index))));
     list
+}
+
+/// Colours in 16 bits; in 8 where none is larger, since some scanners store 0 to 255 in fields of 16 bits.
+fn colours(points: &[Point]) -> Values {
+    let all = points.iter().flat_map(|point| point.colour);
+    let is_small = all.clone().all(|channel| channel <= u16::from(u8::MAX));
+    if is_small { Values::U8(all.map(|channel| channel as u8).collect()) } else { Values::U16(all.collect()) }
 }
 
 /// The triangles of Delaunay in the plane. The points are all at different places there.

@@ -1,6 +1,7 @@
 //! The points of LAS and LAZ files.
 
 use super::{
+    columns::{Column, columns},
     compressed,
     header::{Header, layout, read_header},
 };
@@ -15,6 +16,8 @@ pub(super) struct Point {
     pub classification: u8,
     pub is_last_return: bool,
     pub colour: [u16; 3],
+    /// Place in the columns of the cloud.
+    pub index: u32,
 }
 
 /// The points of a file.
@@ -25,16 +28,29 @@ pub(super) struct Cloud {
     /// Finite.
     pub offset: [f64; 3],
     pub has_colour: bool,
+    pub columns: Vec<Column>,
+    /// Whether there are bytes that are in no column.
+    pub has_other_bytes: bool,
+    /// Points that the file declares deleted, which are not among `points`.
+    pub num_withheld: usize,
 }
 
-/// Reads all points.
+/// Reads all points but those withheld, which count as deleted (LAS 1.4, table 8).
 pub(super) fn read(bytes: &[u8]) -> Result<Cloud, ReadError> {
     let header = read_header(bytes)?;
     let (colour_at, _) = layout(header.format).unwrap_or_default();
-    let mut points = Vec::new();
+    let (mut columns, is_all) = columns(&header, bytes);
+    let (mut points, mut num_withheld) = (Vec::new(), 0);
     let mut take = |records: &[u8]| {
-        let record = |record: &[u8]| point(record, header.format, colour_at);
-        points.extend(records.chunks_exact(header.record_bytes).map(record));
+        for record in records.chunks_exact(header.record_bytes) {
+            if is_withheld(record, header.format) {
+                num_withheld += 1;
+                continue;
+            }
+            columns.iter_mut().for_each(|column| column.push(record));
+            let index = points.len() as u32;
+            points.push(Point { index, ..point(record, header.format, colour_at) });
+        }
     };
     if header.is_compressed {
         compressed::unpack(&header, bytes, take)?;
@@ -42,7 +58,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Cloud, ReadError> {
         take(uncompressed(&header, bytes)?);
     }
     let Header { scale, offset, .. } = header;
-    Ok(Cloud { points, scale, offset, has_colour: colour_at.is_some() })
+    let (has_colour, has_other_bytes) = (colour_at.is_some(), !is_all);
+    Ok(Cloud { points, scale, offset, has_colour, columns, has_other_bytes, num_withheld })
+}
+
+fn is_withheld(record: &[u8], format: u8) -> bool {
+    if format <= 5 { record[15] & 0x80 != 0 } else { record[15] & 0x04 != 0 }
 }
 
 fn point(record: &[u8], format: u8, colour_at: Option<usize>) -> Point {
@@ -55,6 +76,7 @@ fn point(record: &[u8], format: u8, colour_at: Option<usize>) -> Point {
         classification: if is_old { record[15] & 31 } else { record[16] },
         is_last_return: number >= of,
         colour: colour_at.map_or([0; 3], |at| [0, 2, 4].map(|k| u16_at(at + k))),
+        index: 0,
     }
 }
 
