@@ -31,7 +31,7 @@ pub enum DecodeError {
         offset: u64,
     },
     /// The mesh is larger than the caller allows.
-    #[error("limit exceeded: {what} needs {needed}, {allowed} allowed")]
+    #[error("limit of {what} exceeded: {needed} needed, {allowed} allowed")]
     Limit {
         /// Which limit.
         what: &'static str,

@@ -405,7 +405,7 @@ fn nothing_is_dropped_if_nobody_wants_that() {
     let info = workshop.json("info odd.lwc --json");
     let kinds: Vec<&str> =
         info["trailing"].as_array().unwrap().iter().map(|chunk| chunk["kind"].as_str().unwrap()).collect();
-    assert_eq!(kinds, ["loose", "exact", "order"]);
+    assert_eq!(kinds, ["isolated and degenerate", "exact coordinates", "order"]);
     assert_eq!(info["total_bytes"], fs::metadata(workshop.path("odd.lwc")).unwrap().len());
     // Which grid is best is found out if nobody says it.
     workshop.ok(&format!("encode odd.obj {flags} -o small.lwc"));
@@ -700,7 +700,7 @@ fn limits_have_their_own_exit_code() {
     let workshop = Workshop::new();
     workshop.ball_stream();
     let stderr = workshop.fails("decode ball.lwc --max-vertices 500", 5);
-    assert_eq!(error_line(&stderr), "lwc: ball.lwc: limit exceeded: vertices needs 642, 500 allowed");
+    assert_eq!(error_line(&stderr), "lwc: ball.lwc: limit of vertices exceeded: 642 needed, 500 allowed");
     error_line(&workshop.fails("decode ball.lwc --max-memory 100K", 5));
     error_line(&workshop.fails("compare ball.ply ball.lwc --max-vertices 0.5k", 5));
     workshop.ok("decode ball.lwc --max-vertices 1k --max-memory 16MiB");

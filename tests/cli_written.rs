@@ -55,7 +55,7 @@ fn each_file_is_named_with_what_is_in_it() {
 #[test]
 fn an_experiment_names_its_folder() {
     let workshop = workshop();
-    let (stdout, stderr) = workshop.ok("experiment ball.ply -d pca,sqem --levels 2 --out results");
+    let (stdout, stderr) = workshop.ok("experiment ball.ply -d pca,sqem --levels 2 --output results");
     assert_eq!(stderr, "results: results.json and results.csv of 2 runs, charts of 1 mesh\n");
     assert!(stdout.contains("Ranking over 1 mesh"), "{stdout}");
 }

@@ -173,5 +173,8 @@ fn what_is_exact_already_costs_nothing() {
         let info = lwc::StreamInfo::read(bytes).unwrap().unwrap();
         info.trailing().iter().map(|t| t.kind.name()).collect()
     };
-    assert_eq!((kinds(&plain), kinds(&encode(&mesh, &attributes, &options))), (vec![], vec!["exact"]));
+    assert_eq!(
+        (kinds(&plain), kinds(&encode(&mesh, &attributes, &options))),
+        (vec![], vec!["exact coordinates"])
+    );
 }

@@ -226,7 +226,7 @@ fn the_program_writes_goes_on_and_ranks() {
     };
     let csv = || std::fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
 
-    let said = ok("experiment a.ply --out out --levels 3 --descriptors pca,nfv");
+    let said = ok("experiment a.ply --output out --levels 3 --descriptors pca,nfv");
     assert!(said.contains("Ranking over 1 mesh;"), "{said}");
     // Two descriptors lie as far above the mean as below it.
     let of_mean = |name: &str, column: usize| -> f64 {
@@ -243,11 +243,11 @@ fn the_program_writes_goes_on_and_ranks() {
     assert!(first.lines().all(|line| line.split(',').count() == columns));
 
     // What is there stays there, bit by bit, times included; the rest is added.
-    let said = ok("experiment a.ply b.obj --out out --levels 3 --descriptors pca,nfv,sqem --noise");
+    let said = ok("experiment a.ply b.obj --output out --levels 3 --descriptors pca,nfv,sqem --noise");
     assert_eq!(said.lines().filter(|line| line.contains("steps, mean apd")).count(), 6);
     assert_eq!(csv().lines().count(), 1 + 2 * 3 + 2 * 3 * 3);
     assert!(csv().starts_with(&first));
-    let said = ok("experiment a.ply b.obj --out out --levels 3 --descriptors all --noise");
+    let said = ok("experiment a.ply b.obj --output out --levels 3 --descriptors all --noise");
     assert_eq!(said.lines().filter(|line| line.contains("steps, mean apd")).count(), 8);
     assert!(
         said.contains("Ranking over 1 mesh;") && said.contains("Ranking over 2 meshes with noise;"),
@@ -260,9 +260,9 @@ fn the_program_writes_goes_on_and_ranks() {
         assert!(folder.path().join("out").join(name).metadata().unwrap().len() > 1000, "{name}");
     }
 
-    let other = lwc(folder.path(), "experiment a.ply --out out --levels 4");
+    let other = lwc(folder.path(), "experiment a.ply --output out --levels 4");
     assert_eq!(other.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&other.stderr).contains("other settings"));
-    let unknown = lwc(folder.path(), "experiment a.ply --out out --descriptors pca,nonsense");
+    let unknown = lwc(folder.path(), "experiment a.ply --output out --descriptors pca,nonsense");
     assert_eq!(unknown.status.code(), Some(2));
 }

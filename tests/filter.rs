@@ -6,6 +6,7 @@ mod common;
 
 use assert_cmd::Command;
 use common::*;
+use lwc::mesh::{Attribute, Attributes, Domain, Semantic, Values};
 use lwc::{TriMesh, io};
 use std::path::PathBuf;
 
@@ -96,6 +97,43 @@ fn a_changed_level_gets_its_details_back() {
     assert!(largest(&turned(folder.mesh("fine.ply")), &folder.mesh("fine-turned.ply")) < 1e-12);
 }
 
+/// A sphere with a colour and a normal at each vertex, and its stream.
+fn coloured() -> Folder {
+    let folder = Folder::new();
+    let mesh = sphere(4);
+    let colours = (0..3 * mesh.num_vertices()).map(|k| k as u8).collect();
+    let normals = mesh.positions().as_flattened().iter().map(|&x| x as f32).collect();
+    let of_vertices =
+        |name: &str, semantic, values| Attribute::new(name, semantic, Domain::Vertex, 3, values);
+    let mut attributes = Attributes::default();
+    attributes.list = vec![
+        of_vertices("red green blue", Semantic::Color(0), Values::U8(colours)),
+        of_vertices("nx ny nz", Semantic::Normal, Values::F32(normals)),
+    ];
+    io::write_with_attributes(folder.path("coloured.ply"), &mesh, &attributes).unwrap();
+    folder.ok("encode coloured.ply -o coloured.lwc --quiet");
+    folder
+}
+
+#[test]
+fn attributes_stay_and_normals_of_the_former_shape_are_left_out() {
+    let folder = coloured();
+    let (_, _, said) = folder.run("filter coloured.ply --gain 3..=0 -o smooth.ply");
+    assert!(said.contains("normals left out"), "{said}");
+    let of = |name: &str| io::read(folder.path(name)).unwrap().attributes;
+    let smooth = of("smooth.ply");
+    assert_eq!(smooth.list.len(), 1);
+    assert_eq!(smooth.find(Semantic::Color(0)), of("coloured.ply").find(Semantic::Color(0)));
+
+    folder.ok("decode coloured.lwc -o whole.ply --quiet");
+    folder.ok("decode coloured.lwc --level 4 -o coarse.ply --quiet");
+    let (_, _, said) = folder.run("edit coloured.lwc coarse.ply -o edited.ply");
+    assert!(said.contains("normals left out"), "{said}");
+    let edited = of("edited.ply");
+    assert_eq!(edited.list.len(), 1);
+    assert_eq!(edited.find(Semantic::Color(0)), of("whole.ply").find(Semantic::Color(0)));
+}
+
 #[test]
 fn mistakes_have_their_words_and_codes() {
     let folder = Folder::new();
@@ -106,7 +144,7 @@ fn mistakes_have_their_words_and_codes() {
     let stream = std::fs::read(folder.path("ball.lwc")).unwrap();
     std::fs::write(folder.path("cut.lwc"), &stream[..stream.len() / 2]).unwrap();
     for (line, code, part) in [
-        ("filter ball.ply --gain 3=0", 2, "no -o FILE"),
+        ("filter ball.ply --gain 3=0", 2, "give -o FILE"),
         ("filter ball.ply --gain 99=0 -o x.ply", 2, "for no level"),
         ("filter ball.ply --gain 3 -o x.ply", 2, "it is not like"),
         ("filter ball.ply --denoise --gain 3=0 -o x.ply", 2, "cannot be used with"),
@@ -117,7 +155,7 @@ fn mistakes_have_their_words_and_codes() {
         ("edit cut.lwc coarse.obj -o x.ply", 4, "incomplete"),
         ("edit coarse.obj coarse.obj -o x.ply", 3, "not an lwc stream"),
         ("edit ball.lwc coarse.obj -o ball.lwc", 2, "unknown file ending"),
-        ("edit ball.lwc coarse.obj -o x.ply --max-vertices 10", 5, "limit exceeded"),
+        ("edit ball.lwc coarse.obj -o x.ply --max-vertices 10", 5, "limit of vertices exceeded"),
     ] {
         let (found, _, error) = folder.run(line);
         assert!(found == code && error.contains(part), "{line}: {found} {error}");

@@ -152,9 +152,11 @@ fn colours_of_8_bits_in_16_are_8_bits() {
     assert_eq!(colour.values, Values::U8([10, 255, 128].repeat(5)));
 }
 
-/// The file with these fields after each record, each with the type of its description, a name, its bytes in record k
-/// and, if it has one, a scale.
-fn with_extra_bytes(bytes: &[u8], fields: &[(u8, &str, fn(u8) -> Vec<u8>, Option<f64>)]) -> Vec<u8> {
+/// A described field: code of its type, name, bytes in record k, and, if it has one, its scale.
+type Field = (u8, &'static str, fn(u8) -> Vec<u8>, Option<f64>);
+
+/// The file with these fields after each record.
+fn with_extra_bytes(bytes: &[u8], fields: &[Field]) -> Vec<u8> {
     let (start, record_bytes) = (record(bytes, 0), record(bytes, 1) - record(bytes, 0));
     let mut head = bytes[..start].to_vec();
     head.extend([0; 2]);
@@ -187,7 +189,7 @@ fn extra_bytes_and_near_infrared_are_kept() {
     let height: fn(u8) -> Vec<u8> = |k| (f32::from(k) * 0.5).to_le_bytes().to_vec();
     let width: fn(u8) -> Vec<u8> = |k| (-i16::from(k)).to_le_bytes().to_vec();
     let label: fn(u8) -> Vec<u8> = |k| (u64::from(k) << 33).to_le_bytes().to_vec();
-    let fields =
+    let fields: [Field; 3] =
         [(9, "height above", height, None), (4, "width", width, Some(0.25)), (7, "label", label, None)];
     let file = read(&with_extra_bytes(&plain, &fields)).unwrap();
     // The third point, at index 1 of the file, lies above another.

@@ -2,6 +2,7 @@
 
 use super::args::LimitArgs;
 use super::exit::Failure;
+use super::new_shape;
 use super::output::{Destination, say_written, size_of, with_ending};
 use super::quantity;
 use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, reached};
@@ -75,12 +76,7 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     }
     let report = write(&destination, format, &mesh, &attributes)?;
     drop(bar);
-    for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {
-        if !names.is_empty() {
-            ui.warn(&destination.name(), &format!("{what}: {}", names.join(", ")));
-        }
-    }
-
+    new_shape::warn_of(&destination, &report, ui);
     let how_far = reached(&decoder).unwrap_or_default();
     say_written(&destination, &format!("{}, {how_far}", size_of(&mesh)), ui);
     Ok(())
@@ -143,9 +139,14 @@ fn sound_mesh(
 }
 
 fn note_what_is_missing(decoder: &Decoder, args: &Decode, name: &str, ui: &Ui) {
-    let finest = decoder.info().map_or(0, lwc::StreamInfo::finest_level);
-    if let Some(level) = args.level.filter(|&level| level > finest) {
+    let (Some(level), Some(info)) = (args.level, decoder.info()) else { return };
+    let finest = info.finest_level();
+    if level > finest {
         ui.note(name, &format!("there is no level {level}, the finest is {finest}"));
+    }
+    let only_finest: Vec<&str> = info.trailing().iter().map(|trailing| trailing.kind.name()).collect();
+    if level < finest && !only_finest.is_empty() {
+        ui.note(name, &format!("only the whole stream has: {}", only_finest.join(", ")));
     }
 }
 

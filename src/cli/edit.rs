@@ -3,19 +3,24 @@
 use super::args::{LimitArgs, Reading};
 use super::exit::Failure;
 use super::input::read_mesh;
+use super::new_shape;
 use super::output::{Destination, say_written, size_of};
 use super::stream::StreamSource;
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::io::{Format, WriteError};
+use lwc::mesh::Attributes;
 use lwc::multiresolution::DetailTransfer;
+use lwc::{DecodeError, Decoder, Limits, StreamInfo, TriMesh};
+use std::io;
 use std::path::PathBuf;
 
 /// Put the details of a stream back on one of its coarse levels that was edited.
 ///
 /// Decode a level, move its vertices in any program that keeps vertices and triangles as they are, and give the
 /// result here: every detail follows the surface that it stands on, so a bent model keeps its wrinkles. The
-/// level is recognised by its number of vertices.
+/// level is recognised by its number of vertices. Use .obj or .ply for it: .stl has no shared vertices, and .glb repeats
+/// those at seams. The result has the attributes of the stream except its normals. Scenes need `encode --merge`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Example:
@@ -37,6 +42,39 @@ pub struct Edit {
     pub limits: LimitArgs,
 }
 
+/// The attributes of the stream, which hold for the edited mesh if its triangles are those of the stream.
+fn attributes_of(
+    bytes: &[u8],
+    mesh: &TriMesh,
+    limits: Limits,
+    name: &str,
+    ui: &Ui,
+) -> anyhow::Result<Attributes> {
+    let mut decoder = Decoder::new(limits);
+    decoder.push(bytes).with_context(|| name.to_owned())?;
+    let decoded = decoder.to_tri_mesh_with_attributes();
+    let (decoded, attributes) = decoded.ok_or(DecodeError::NoMesh).with_context(|| name.to_owned())?;
+    if attributes.list.is_empty() || decoded.triangles() == mesh.triangles() {
+        return Ok(attributes);
+    }
+    ui.warn(
+        name,
+        "attributes left out: the stream has isolated vertices, degenerate triangles or an order of its own",
+    );
+    Ok(Attributes::default())
+}
+
+/// A level is decoded with the meshes of a scene in their places, and has other vertices than the stream.
+fn refuse_scene(bytes: &[u8]) -> Result<(), Failure> {
+    match StreamInfo::read(bytes) {
+        Ok(Some(info)) if info.scene().is_some() => {
+            let what = "a scene cannot be edited; `lwc encode --merge` makes one mesh of it";
+            Err(Failure::Input(io::Error::other(what)))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Reads both, joins them, writes, reports.
 pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
     let destination = Destination::new(args.output.clone());
@@ -54,14 +92,16 @@ pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
     let changed = read_mesh(&args.changed, &args.reading, reading, ui)?.mesh;
     let source = StreamSource::new(Some(&args.stream))?;
     let bytes = source.read()?;
+    refuse_scene(&bytes).with_context(|| source.name())?;
     let (num_vertices, limits) = (changed.num_vertices(), args.limits.limits());
     let edition = DetailTransfer::new_with_progress(&bytes, num_vertices, limits, &|done| decoding.set(done))
         .with_context(|| source.name())?;
     editing.set(0.0);
     let level = edition.level();
     let mesh = edition.apply(&changed).with_context(|| args.changed.display().to_string())?;
+    let attributes = attributes_of(&bytes, &mesh, limits, &source.name(), ui)?;
     writing.set(0.0);
-    lwc::io::write(path, &mesh).with_context(|| destination.name())?;
+    new_shape::write(path, &mesh, attributes, ui).with_context(|| destination.name())?;
     drop(bar);
     say_written(&destination, &format!("{}, details above level {level}", size_of(&mesh)), ui);
     Ok(())

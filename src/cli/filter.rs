@@ -4,6 +4,7 @@ use super::args::{Reading, Scale};
 use super::exit::Failure;
 use super::gain::Gain;
 use super::input::read_mesh;
+use super::new_shape;
 use super::output::{Destination, say_written, size_of};
 use super::quantity;
 use super::ui::Ui;
@@ -11,7 +12,7 @@ use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lwc::TriMesh;
 use lwc::descriptors::mean_edge_length;
-use lwc::io::{Format, WriteError};
+use lwc::io::{Format, MeshFile, WriteError};
 use lwc::multiresolution::{Decomposition, Options, Prediction, Threshold, denoised_with_progress};
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -19,7 +20,8 @@ use std::path::PathBuf;
 /// Smooth or enhance features of a chosen size, or remove noise.
 ///
 /// The mesh becomes a base mesh, level 0, and the details of levels 1, 2, … up to the finest; the details of
-/// the levels chosen are multiplied and the mesh is put together again, with the same vertices and triangles.
+/// the levels chosen are multiplied and the mesh is put together again, with the same vertices, triangles and attributes but
+/// without normals. A scene (.glb .gltf) becomes one mesh.
 /// Without -o the levels are listed: vertices, and the root mean square of the details.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -82,7 +84,7 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
         check(destination).with_context(|| destination.name())?;
         destination.check(Some(&args.input), false)?;
     } else if args.denoise || !args.gain.is_empty() {
-        return Err(Failure::Usage("there is something to do, but no -o FILE for the result".into()).into());
+        return Err(Failure::Usage("give -o FILE for the result".into()).into());
     }
     let name = args.input.display().to_string();
     let bar = ui.bar();
@@ -90,7 +92,7 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
     let filtering = if args.denoise { 600.0 } else { 85.0 };
     let [reading, filtering, writing] =
         bar.split([("reading", 10.0), ("filtering", filtering), ("writing", 5.0)]);
-    let mesh = read_mesh(&args.input, &args.reading, reading, ui)?.mesh;
+    let MeshFile { mesh, attributes, .. } = read_mesh(&args.input, &args.reading, reading, ui)?;
     let progress = |done: f64| filtering.set(done);
     let mut report = Vec::new();
     let filtered = if args.denoise {
@@ -111,7 +113,7 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
     };
     writing.set(0.0);
     if let Some(Destination::File(path)) = &destination {
-        lwc::io::write(path, &filtered).with_context(|| path.display().to_string())?;
+        new_shape::write(path, &filtered, attributes, ui).with_context(|| path.display().to_string())?;
     }
     drop(bar);
     if !ui.is_quiet() {

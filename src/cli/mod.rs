@@ -17,6 +17,7 @@ pub mod info;
 mod input;
 mod input_file;
 pub mod man;
+mod new_shape;
 mod output;
 mod passes;
 pub mod program;

@@ -89,9 +89,9 @@ impl TrailingKind {
     /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Loose => "loose",
-            Self::Exact => "exact",
-            Self::Values => "values",
+            Self::Loose => "isolated and degenerate",
+            Self::Exact => "exact coordinates",
+            Self::Values => "exact values",
             Self::Order => "order",
             Self::Materials => "materials",
             Self::Unknown => "unknown",

@@ -141,7 +141,7 @@ pub fn write_with_attributes_to(
         }
     };
     if attributes.gltf_materials.is_some() {
-        report.ignored.push("materials but their names".to_owned());
+        report.ignored.push("materials except their names".to_owned());
     }
     Ok(report)
 }

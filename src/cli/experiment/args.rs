@@ -17,15 +17,15 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  lwc experiment dragon.ply terrain.ply --out results
-  lwc experiment dragon.ply terrain.ply --out results --noise")]
+  lwc experiment dragon.ply terrain.ply --output results
+  lwc experiment dragon.ply terrain.ply --output results --noise")]
 pub struct Experiment {
     /// Meshes (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst).
     #[arg(value_name = "MESH", required = true)]
     pub meshes: Vec<PathBuf>,
     /// Folder for the results, created if it does not exist.
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
+    pub output: PathBuf,
     /// Descriptors, separated by commas, or `all`.
     #[arg(short, long, value_name = "NAMES", default_value = "all", value_parser = descriptors)]
     pub descriptors: Descriptors,

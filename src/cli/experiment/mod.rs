@@ -21,7 +21,7 @@ use std::path::Path;
 /// Runs what is not there yet, mesh after mesh and descriptor after descriptor: each has all cores for
 /// its descriptor, and its times are its own.
 pub fn run(args: &Args, ui: &Ui) -> anyhow::Result<()> {
-    let mut results = Results::open(&args.out, (&args.settings()).into())?;
+    let mut results = Results::open(&args.output, (&args.settings()).into())?;
     let weights: Vec<f64> = args.meshes.iter().map(|path| weight(path)).collect();
     let total: f64 = weights.iter().sum();
     let bar = ui.bar();
@@ -38,7 +38,7 @@ pub fn run(args: &Args, ui: &Ui) -> anyhow::Result<()> {
     ranking::print(&mut io::stdout().lock(), &results)?;
     let runs = counted(results.runs.len(), "run", "runs");
     let meshes = counted(results.by_subject().len(), "mesh", "meshes");
-    ui.say(&format!("{}: results.json and results.csv of {runs}, charts of {meshes}", args.out.display()));
+    ui.say(&format!("{}: results.json and results.csv of {runs}, charts of {meshes}", args.output.display()));
     Ok(())
 }
 
@@ -73,12 +73,12 @@ fn run_mesh(
             let run = Run { subject: subject.clone(), descriptor: descriptor.name().into(), steps };
             ui.beside_bar(|| print(&run))?;
             results.runs.push(run);
-            results.save(&args.out)?;
+            results.save(&args.output)?;
         }
     }
     let groups = results.by_subject();
     match groups.iter().find(|(found, _)| **found == subject) {
-        Some((_, runs)) => charts::write(&args.out, &subject, runs),
+        Some((_, runs)) => charts::write(&args.output, &subject, runs),
         None => Ok(()),
     }
 }

@@ -76,7 +76,7 @@ mod tests {
 
     fn point(x: i32, y: i32, z: i32) -> Point {
         let colour = [0; 3];
-        Point { grid: [x, y, z], intensity: 0, classification: 0, is_last_return: true, colour }
+        Point { grid: [x, y, z], intensity: 0, classification: 0, is_last_return: true, colour, index: 0 }
     }
 
     fn grids(points: &[Point]) -> Vec<[i32; 3]> {
