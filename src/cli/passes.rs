@@ -61,10 +61,11 @@ pub fn attributes_to_json(info: &StreamInfo, bytes: &[u64]) -> Value {
         json!({
             "bytes": bytes.get(i),
             "name": attribute.name,
-            "semantic": format!("{:?}", attribute.semantic),
+            "semantic": attribute.semantic.name(),
+            "set_index": attribute.semantic.set_index(),
             "domain": attribute.domain.to_string(),
             "components": attribute.num_components,
-            "type": attribute.scalar.map(|scalar| format!("{scalar:?}")),
+            "component_type": attribute.component_type.map(lwc::mesh::ComponentType::name),
             "bits": attribute.bits,
         })
     };

@@ -35,7 +35,7 @@ pub struct AttributeInfo {
     /// Components of an entry.
     pub num_components: usize,
     /// Type of the values, `None` for names.
-    pub scalar: Option<ComponentType>,
+    pub component_type: Option<ComponentType>,
     /// Bits of each of the integers that are coded for an entry.
     pub bits: u32,
 }
@@ -47,7 +47,7 @@ impl AttributeInfo {
             semantic: declaration.semantic,
             domain: declaration.domain,
             num_components: declaration.num_components,
-            scalar: declaration.scalar,
+            component_type: declaration.scalar,
             bits: match declaration.coding {
                 Coding::Uniform { bits, .. } | Coding::Octahedral { bits } => bits,
                 Coding::Table { .. } => usize::BITS - (declaration.table_len() - 1).leading_zeros(),

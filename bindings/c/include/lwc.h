@@ -70,7 +70,7 @@ typedef enum LwcSemantic {
   // Direction away from the surface, three components.
   LWC_SEMANTIC_NORMAL = 1,
   // Place in a texture.
-  LWC_SEMANTIC_TEX_COORD = 2,
+  LWC_SEMANTIC_TEXCOORD = 2,
   // Red, green, blue and perhaps opacity.
   LWC_SEMANTIC_COLOR = 3,
   // Which material.
@@ -88,7 +88,7 @@ typedef enum LwcAttributeDomain {
   // Every corner: element 3 t + i is corner i of triangle t.
   LWC_ATTRIBUTE_DOMAIN_CORNER = 1,
   // Every triangle.
-  LWC_ATTRIBUTE_DOMAIN_FACE = 2,
+  LWC_ATTRIBUTE_DOMAIN_TRIANGLE = 2,
 } LwcAttributeDomain;
 
 // The type of the values.

@@ -14,7 +14,7 @@ pub enum Semantic {
     /// Direction away from the surface, three components.
     Normal = 1,
     /// Place in a texture.
-    TexCoord = 2,
+    Texcoord = 2,
     /// Red, green, blue and perhaps opacity.
     Color = 3,
     /// Which material.
@@ -34,7 +34,7 @@ pub enum AttributeDomain {
     /// Every corner: element 3 t + i is corner i of triangle t.
     Corner = 1,
     /// Every triangle.
-    Face = 2,
+    Triangle = 2,
 }
 
 /// The type of the values.
@@ -124,7 +124,7 @@ fn from_c(semantic: u32, set_index: u32) -> Option<mesh::Semantic> {
 fn to_c(semantic: mesh::Semantic) -> (Semantic, u32) {
     match semantic {
         mesh::Semantic::Normal => (Semantic::Normal, 0),
-        mesh::Semantic::TexCoord(set) => (Semantic::TexCoord, set),
+        mesh::Semantic::TexCoord(set) => (Semantic::Texcoord, set),
         mesh::Semantic::Color(set) => (Semantic::Color, set),
         mesh::Semantic::Material => (Semantic::Material, 0),
         mesh::Semantic::Group => (Semantic::Group, 0),

@@ -117,10 +117,10 @@ fn attributes_go_through_a_stream() {
     let entries = [0, 1, 2, 3, 4, LWC_NO_ENTRY];
     let names = [c"left".as_ptr(), c"right".as_ptr()];
     unsafe {
-        let place = what(c"uv", Semantic::TexCoord, AttributeDomain::Corner, ComponentType::F32);
+        let place = what(c"uv", Semantic::Texcoord, AttributeDomain::Corner, ComponentType::F32);
         let place = Attribute { set_index: 3, num_components: 2, num_entries: 5, ..place };
         assert_eq!(lwc_mesh_add_attribute(mesh, &place, uv.as_ptr().cast(), entries.as_ptr()), Status::Ok);
-        let part = what(c"part", Semantic::Group, AttributeDomain::Face, ComponentType::Names);
+        let part = what(c"part", Semantic::Group, AttributeDomain::Triangle, ComponentType::Names);
         let part = Attribute { num_entries: 2, ..part };
         assert_eq!(lwc_mesh_add_attribute(mesh, &part, names.as_ptr().cast(), null()), Status::Ok);
         let heat = what(c"heat", Semantic::Generic, AttributeDomain::Vertex, ComponentType::I16);
@@ -151,7 +151,8 @@ fn attributes_go_through_a_stream() {
 }
 
 unsafe fn check_square(mesh: *const Mesh, uv: &[[f32; 2]], heats: &[i16; 4]) {
-    let (mut found, mut index) = (what(c"", Semantic::Generic, AttributeDomain::Face, ComponentType::U8), 9);
+    let (mut found, mut index) =
+        (what(c"", Semantic::Generic, AttributeDomain::Triangle, ComponentType::U8), 9);
     unsafe {
         assert_eq!((lwc_mesh_num_attributes(mesh), lwc_mesh_num_triangles(mesh)), (3, 2));
         assert_eq!(lwc_mesh_find_attribute(mesh, c"uv".as_ptr(), &mut index), Status::Ok);

@@ -10,19 +10,6 @@ use pyo3::types::PyDict;
 const DOMAINS: [(&str, Domain); 3] =
     [("vertex", Domain::Vertex), ("corner", Domain::Corner), ("face", Domain::Triangle)];
 
-/// Name of a semantic, and which of several.
-pub fn to_python(semantic: Semantic) -> (&'static str, u32) {
-    match semantic {
-        Semantic::Normal => ("normal", 0),
-        Semantic::TexCoord(set) => ("texcoord", set),
-        Semantic::Color(set) => ("color", set),
-        Semantic::Material => ("material", 0),
-        Semantic::Group => ("group", 0),
-        Semantic::Object => ("object", 0),
-        _ => ("generic", 0),
-    }
-}
-
 fn from_python(semantic: &str, set_index: u32) -> PyResult<Semantic> {
     Ok(match semantic {
         "normal" => Semantic::Normal,
@@ -32,7 +19,11 @@ fn from_python(semantic: &str, set_index: u32) -> PyResult<Semantic> {
         "group" => Semantic::Group,
         "object" => Semantic::Object,
         "generic" => Semantic::Generic,
-        _ => return Err(PyValueError::new_err(format!("there is no semantic {semantic}"))),
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "there is no semantic {semantic}: use normal, texcoord, color, material, group, object or generic"
+            )));
+        }
     })
 }
 
@@ -118,7 +109,7 @@ fn write<'py>(py: Python<'py>, attributes: Attributes) -> PyResult<Bound<'py, Py
         let entry = |entry: u32| if entry == NO_ENTRY { -1 } else { i64::from(entry) };
         let indices =
             indices.map(|entries| entries.into_iter().map(entry).collect::<Vec<_>>().into_pyarray(py));
-        let (semantic, set_index) = to_python(semantic);
+        let (semantic, set_index) = (semantic.name(), semantic.set_index());
         let made = class.call1((values, domain(of), semantic, set_index, is_normalized, indices))?;
         let mut key = name.clone();
         let mut number = 2;

@@ -170,11 +170,10 @@ fn info_dict<'py>(py: Python<'py>, info: &StreamInfo) -> PyResult<Bound<'py, PyD
 }
 
 fn attribute_dict<'py>(py: Python<'py>, attribute: &lwc::AttributeInfo) -> PyResult<Bound<'py, PyDict>> {
-    let (semantic, set_index) = attributes::to_python(attribute.semantic);
     let dict = PyDict::new(py);
     dict.set_item("name", &attribute.name)?;
-    dict.set_item("semantic", semantic)?;
-    dict.set_item("set_index", set_index)?;
+    dict.set_item("semantic", attribute.semantic.name())?;
+    dict.set_item("set_index", attribute.semantic.set_index())?;
     dict.set_item("domain", attributes::domain(attribute.domain))?;
     dict.set_item("components", attribute.num_components)?;
     dict.set_item("bits", attribute.bits)?;

@@ -60,6 +60,29 @@ pub enum Semantic {
     Generic,
 }
 
+impl Semantic {
+    /// Name in reports and in Python.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::TexCoord(_) => "texcoord",
+            Self::Color(_) => "color",
+            Self::Material => "material",
+            Self::Group => "group",
+            Self::Object => "object",
+            Self::Generic => "generic",
+        }
+    }
+
+    /// Which of several sets; 0 where there is one only.
+    pub fn set_index(self) -> u32 {
+        match self {
+            Self::TexCoord(set) | Self::Color(set) => set,
+            _ => 0,
+        }
+    }
+}
+
 /// What has a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Domain {

@@ -22,6 +22,20 @@ pub enum ComponentType {
 }
 
 impl ComponentType {
+    /// Name in reports, as in Rust.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::I8 => "i8",
+            Self::U8 => "u8",
+            Self::I16 => "i16",
+            Self::U16 => "u16",
+            Self::I32 => "i32",
+            Self::U32 => "u32",
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+
     /// Every type, in the order of the variants.
     pub const ALL: [Self; 8] =
         [Self::I8, Self::U8, Self::I16, Self::U16, Self::I32, Self::U32, Self::F32, Self::F64];

@@ -1,0 +1,32 @@
+//! Meshes whose shape has changed: which of the attributes still hold.
+
+use super::output::Destination;
+use super::ui::Ui;
+use lwc::TriMesh;
+use lwc::io::{self, WriteError, WriteReport};
+use lwc::mesh::{Attributes, Semantic};
+use std::path::Path;
+
+/// Writes a mesh with the attributes that it had before its vertices moved, and warns of those that are left out. Normals
+/// are: they are those of the shape before.
+pub fn write(path: &Path, mesh: &TriMesh, mut attributes: Attributes, ui: &Ui) -> Result<(), WriteError> {
+    let name = path.display().to_string();
+    let (normals, others) = attributes.list.into_iter().partition(|a| a.semantic == Semantic::Normal);
+    attributes.list = others;
+    let normals: Vec<_> = normals;
+    if !normals.is_empty() {
+        ui.warn(&name, "normals left out: they are those of the shape before");
+    }
+    let report = io::write_with_attributes(path, mesh, &attributes)?;
+    warn_of(&Destination::File(path.to_owned()), &report, ui);
+    Ok(())
+}
+
+/// Says what a format had no place for.
+pub fn warn_of(destination: &Destination, report: &WriteReport, ui: &Ui) {
+    for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {
+        if !names.is_empty() {
+            ui.warn(&destination.name(), &format!("{what}: {}", names.join(", ")));
+        }
+    }
+}
