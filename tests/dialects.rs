@@ -5,7 +5,12 @@
 use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, ReadError},
+    mesh::{Attribute, NO_ENTRY, Values},
 };
+
+fn obj(text: impl AsRef<[u8]>) -> Result<MeshFile, ReadError> {
+    io::read_bytes(text.as_ref(), Format::Obj)
+}
 
 fn stl(bytes: impl AsRef<[u8]>) -> Result<MeshFile, ReadError> {
     io::read_bytes(bytes.as_ref(), Format::Stl)
@@ -14,6 +19,18 @@ fn stl(bytes: impl AsRef<[u8]>) -> Result<MeshFile, ReadError> {
 /// The message of an error that must be there.
 fn refusal(result: Result<MeshFile, ReadError>) -> String {
     result.expect_err("accepted").to_string()
+}
+
+fn named<'a>(file: &'a MeshFile, name: &str) -> &'a Attribute {
+    let found = file.attributes.list.iter().find(|attribute| attribute.name == name);
+    found.unwrap_or_else(|| panic!("no {name} in {:?}", file.attributes))
+}
+
+/// The entry of each corner.
+fn entries(file: &MeshFile, name: &str) -> Vec<u32> {
+    let attribute = named(file, name);
+    let entry = |k: usize| attribute.entry_at_corner(&file.mesh, k / 3, k % 3);
+    (0..3 * file.mesh.num_triangles()).map(|k| entry(k).map_or(NO_ENTRY, |entry| entry as u32)).collect()
 }
 
 fn tetrahedron() -> TriMesh {
@@ -88,4 +105,116 @@ fn stl_of_nothing_but_bytes_is_refused() {
         assert_eq!(refusal(stl(vec![0; num_bytes])), expected);
     }
     assert!(stl(vec![0; 84]).unwrap().mesh.triangles().is_empty());
+}
+
+// --- OBJ -----------------------------------------------------------------------------------------------
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+#[test]
+fn obj_values_that_are_no_number_are_nan_in_every_spelling() {
+    for nan in ["nan", "1.#QNAN", "-1.#IND", "1.#SNAN0", "-1.#IND00e+000", "nan(ind)", "-nan(ind)", "-nan"] {
+        let text = format!("{TRIANGLE}vt 0 {nan} # c\nvn {nan} {nan} {nan}#c\nf 1/1/1 2/1/1 3/1/1\n");
+        let file = obj(&text).unwrap();
+        assert_eq!(named(&file, "vt").values, Values::F64(vec![0.0, f64::NAN]), "{nan}");
+        assert_eq!(named(&file, "vn").values, Values::F64(vec![f64::NAN; 3]), "{nan}");
+        let expected = format!("line 1: vertex 1 has a coordinate that is not finite: `{nan}`");
+        assert_eq!(refusal(obj(format!("v 0 {nan} 0\n"))), expected);
+    }
+    assert_eq!(
+        refusal(obj("v 1.#INF 0 0\n")),
+        "line 1: vertex 1 has a coordinate that is not finite: `1.#INF`"
+    );
+    assert_eq!(refusal(obj("v 0 0 1.#\nv 1.#x 2 3\n")), "line 2: a vertex needs three numbers: `v 1.`");
+}
+
+#[test]
+fn obj_names_may_have_a_number_sign() {
+    let text = format!(
+        "mtllib a #1.mtl\n{TRIANGLE}o #\ng a#b # c\nusemtl Grey #1\ns 1 # on\nf 1 2 3\nusemtl Grey #2\nf 3 2 1\n"
+    );
+    let file = obj(&text).unwrap();
+    let names = |name: &str| named(&file, name).values.names().unwrap().to_vec();
+    assert_eq!(names("usemtl"), ["Grey #1", "Grey #2"]);
+    assert_eq!(
+        (names("o"), names("g"), names("s")),
+        (vec!["#".into()], vec!["a#b # c".into()], vec!["1".into()])
+    );
+    assert_eq!(file.attributes.material_libraries[..], ["a #1.mtl"]);
+    let mut again = Vec::new();
+    io::write_with_attributes_to(&mut again, &file.mesh, &file.attributes, Format::Obj).unwrap();
+    assert_eq!(obj(again).unwrap().attributes, file.attributes);
+}
+
+#[test]
+fn obj_index_0_is_no_texture_coordinate_and_no_normal() {
+    let file = obj(format!("{TRIANGLE}vt 0 0\nvn 0 0 1\nf 1/1/0 2/0/1 3/1/1\n")).unwrap();
+    assert_eq!(entries(&file, "vt"), [0, NO_ENTRY, 0]);
+    assert_eq!(entries(&file, "vn"), [NO_ENTRY, 0, 0]);
+    assert_eq!(file.report.ignored, ["index 0 of texture coordinates or normals"]);
+}
+
+#[test]
+fn obj_indices_into_nothing_are_left_out() {
+    for faces in ["f 1/1 2/2 3/3", "f 1/-1 2/-2 3/-3", "f 1/1 2/-1 3"] {
+        let file = obj(format!("{TRIANGLE}{faces}\n")).unwrap();
+        assert_eq!((file.mesh.num_triangles(), file.attributes.list.len()), (1, 0));
+        assert_eq!(file.report.ignored, ["indices of texture coordinates, of which there are none"]);
+    }
+    let file = obj(format!("{TRIANGLE}vt 0 0\nf 1/1/1 2/1/2 3/1/9\n")).unwrap();
+    assert_eq!(file.report.ignored, ["indices of normals, of which there are none"]);
+    assert_eq!(entries(&file, "vt"), [0; 3]);
+    let late = refusal(obj(format!("{TRIANGLE}f 1/-1 2/-1 3/-1\nvt 0 0\n")));
+    assert_eq!(late, "line 4: there is no such texture coordinate above");
+}
+
+#[test]
+fn obj_weights_of_one_are_no_news() {
+    let faces = "f 1 2 3\n";
+    let of = |first: &str| obj(format!("{first}\nv 1 0 0\nv 0 1 0\n{faces}")).unwrap().report.ignored;
+    assert_eq!((of("v 0 0 0 1"), of("v 0 0 0 1.000")), (vec![], vec![]));
+    assert_eq!(
+        (of("v 0 0 0 0.5"), of("v 0 0 0 x")),
+        (vec!["weights of vertices".to_owned()], vec!["weights of vertices".to_owned()])
+    );
+    assert_eq!(of("v 0 0 0 1 2"), ["v.more"]);
+}
+
+#[test]
+fn obj_third_texture_coordinates_are_kept_if_one_is_not_0() {
+    let uv = |last: &str| {
+        let text = format!("{TRIANGLE}vt 0.5 1 0\nvt 1 1\nvt {last}\nf 1/1 2/2 3/3\n");
+        named(&obj(text).unwrap(), "vt").clone()
+    };
+    assert_eq!(
+        (uv("0 0 -0.0").num_components, uv("0 0 -0.0").values),
+        (2, Values::F64(vec![0.5, 1.0, 1.0, 1.0, 0.0, 0.0]))
+    );
+    assert_eq!(uv("0 0 0.5").num_components, 3);
+}
+
+#[test]
+fn obj_colours_of_zbrush_belong_to_the_vertices_above() {
+    let colour = |text: &str| named(&obj(text).unwrap(), "v.rgb").clone();
+    let of = |rgb: &[u8]| Values::U8(rgb.to_vec());
+    let whole = colour(&format!("{TRIANGLE}# ZBrush\n#MRGB ff010203ff0a0b0c\n#MRGB 00fffefd\nf 1 2 3\n"));
+    assert_eq!((whole.values, whole.indices), (of(&[1, 2, 3, 10, 11, 12, 255, 254, 253]), None));
+    assert!(whole.is_normalized);
+    let parts = colour("v 0 0 0\nv 1 0 0\n#MRGB ff010101\nv 0 1 0\n#MRGB ff020202\nf 1 2 3\n");
+    assert_eq!((parts.values, parts.indices), (of(&[1, 1, 1, 2, 2, 2]), Some(vec![NO_ENTRY, 0, 1])));
+    let more = colour(&format!("{TRIANGLE}#MRGB ff010101ff020202ff030303ff040404\nf 1 2 3\n"));
+    assert_eq!(more.indices, Some(vec![0, 1, 2]));
+}
+
+#[test]
+fn obj_colours_of_zbrush_that_are_none_are_named() {
+    for (lines, ignored) in
+        [("#MRGB ff0102\n", "#MRGB that is no colour"), ("#MRGB +f010203\n", "#MRGB that is no colour")]
+    {
+        let file = obj(format!("{TRIANGLE}{lines}f 1 2 3\n")).unwrap();
+        assert_eq!((file.attributes.list.len(), &file.report.ignored[..]), (0, &[ignored.to_owned()][..]));
+    }
+    let both = obj(format!("v 5 5 5 1 0 0\n{TRIANGLE}#MRGB ff010101\n#MRGBx\nf 1 2 3\n")).unwrap();
+    assert_eq!(named(&both, "v.rgb").values, Values::F64(vec![1.0, 0.0, 0.0]));
+    assert_eq!(both.report.ignored, ["#MRGB beside other colours"]);
 }
