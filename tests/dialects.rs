@@ -12,6 +12,10 @@ fn obj(text: impl AsRef<[u8]>) -> Result<MeshFile, ReadError> {
     io::read_bytes(text.as_ref(), Format::Obj)
 }
 
+fn ply(bytes: impl AsRef<[u8]>) -> Result<MeshFile, ReadError> {
+    io::read_bytes(bytes.as_ref(), Format::Ply)
+}
+
 fn stl(bytes: impl AsRef<[u8]>) -> Result<MeshFile, ReadError> {
     io::read_bytes(bytes.as_ref(), Format::Stl)
 }
@@ -217,4 +221,91 @@ fn obj_colours_of_zbrush_that_are_none_are_named() {
     let both = obj(format!("v 5 5 5 1 0 0\n{TRIANGLE}#MRGB ff010101\n#MRGBx\nf 1 2 3\n")).unwrap();
     assert_eq!(named(&both, "v.rgb").values, Values::F64(vec![1.0, 0.0, 0.0]));
     assert_eq!(both.report.ignored, ["#MRGB beside other colours"]);
+}
+
+// --- PLY -----------------------------------------------------------------------------------------------
+
+/// A text of three vertices with `properties` besides their place, and a face.
+fn ply_text(properties: &str, body: &str) -> String {
+    let xyz = "property float x\nproperty float y\nproperty float z\n";
+    let face = "element face 1\nproperty list uchar int vertex_indices\n";
+    format!("ply\nformat ascii 1.0\nelement vertex 3\n{xyz}{properties}{face}end_header\n{body}")
+}
+
+#[test]
+fn ply_values_that_are_no_number_are_nan_in_every_spelling() {
+    let properties = "property float nx\nproperty float ny\nproperty double q\n";
+    for nan in ["nan", "1.#QNAN", "-1.#IND", "nan(ind)", "-nan(ind)"] {
+        let vertices = format!("0 0 0 {nan} 1 {nan}\n1 0 0 0 {nan} 0\n0 1 0 -1.#INF 1.#INF00 1.#INF\n");
+        let file = ply(ply_text(properties, &format!("{vertices}3 0 1 2\n"))).unwrap();
+        assert_eq!(named(&file, "nx").values, Values::F32(vec![f32::NAN, 0.0, f32::NEG_INFINITY]), "{nan}");
+        assert_eq!(named(&file, "ny").values, Values::F32(vec![1.0, f32::NAN, f32::INFINITY]), "{nan}");
+        assert_eq!(named(&file, "q").values, Values::F64(vec![f64::NAN, 0.0, f64::INFINITY]), "{nan}");
+    }
+    let message = refusal(ply(ply_text("property int i\n", "0 0 0 1.#IND\n")));
+    assert!(message.contains("not a number for its property: `1.#IND`"), "{message}");
+}
+
+#[test]
+fn ply_elements_may_go_over_several_lines() {
+    let properties = "property float q\nproperty uchar i\n";
+    let flat = ply(ply_text(properties, "0 0 0 1 2\n1 0 0 3 4\n0 1 0 5 6\n3 0 1 2\n")).unwrap();
+    let lines = ply(ply_text(properties, "0 0 0 \n1 2 \n\n1 0 0\n3\n4\n0 1 0 5 6\n3\r\n0 1\n 2\n")).unwrap();
+    assert_eq!(flat, lines);
+    for (body, line, cause) in [
+        ("0 0 0\n1 2 9\n1 0 0 3 4\n", 12, "too few values for vertex 1 of 3"),
+        ("0 0 0 1 2\n1 0 0 3\n0 1 0 5 6\n3 0 1 2\n", 13, "too few values for vertex 2 of 3"),
+        ("0 0 0 1 2\n1 0\n\n0 3\n", 13, "too few values for vertex 2 of 3"),
+        ("0 0 0 1 2\n1 0\n\n0 x 3\n", 13, "`x` in vertex 2 of 3"),
+        ("0 0 0 1 2\n1 0 0 3 4\n0 1 0 5 6\n4\n0 1 2\n", 15, "too few values for face 1 of 1"),
+        ("0 0 0 1 2\n1 0 0 3 4\n0 1 0 5 6\n3\n0 1\n2 3\n", 15, "too few values for face 1 of 1"),
+    ] {
+        let message = refusal(ply(ply_text(properties, body)));
+        assert!(
+            message.starts_with(&format!("line {line}: ")) && message.contains(cause),
+            "{body:?}: {message}"
+        );
+    }
+}
+
+#[test]
+fn ply_textures_that_a_comment_names_are_reported() {
+    let text = ply_text("", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    let lines = "ascii 1.0\ncomment TextureFile skin one.png\ncomment TextureFile\ncomment textures\n";
+    let file = ply(text.replace("ascii 1.0\n", lines)).unwrap();
+    assert_eq!(file.report.ignored, ["TextureFile `skin one.png`", "TextureFile ``"]);
+}
+
+#[test]
+fn ply_integers_of_64_bits_are_kept() {
+    let text = |ids: [&str; 3]| {
+        let [a, b, c] = ids;
+        let properties = "property int64 id\nproperty uint64 hash\n";
+        let body = format!("0 0 0 {a} 7\n1 0 0 {b} 8\n0 1 0 {c} 4294967295\n3 0 1 2\n");
+        ply(ply_text(properties, &body).replace("uchar int vertex", "int64 uint64 vertex")).unwrap()
+    };
+    let file = text(["-2147483648", "5", "2147483647"]);
+    assert_eq!(named(&file, "id").values, Values::I32(vec![i32::MIN, 5, i32::MAX]));
+    assert_eq!(named(&file, "hash").values, Values::U32(vec![7, 8, u32::MAX]));
+    assert_eq!((file.mesh.triangles(), file.report.ignored.len()), (&[[0, 1, 2]][..], 0));
+    let far = text(["-1", "9007199254740991", "-2147483649"]);
+    assert_eq!(named(&far, "id").values, Values::F64(vec![-1.0, 9_007_199_254_740_991.0, -2_147_483_649.0]));
+    assert!(far.report.ignored.is_empty());
+    let rounded = text(["-1", "9007199254740993", "0"]);
+    assert_eq!(rounded.report.ignored, ["the last digits of integers beyond 53 bits"]);
+}
+
+#[test]
+fn ply_integers_of_64_bits_are_kept_in_either_byte_order() {
+    let ids = [-1i64, 5, i64::MIN];
+    for encoding in ["binary_little_endian", "binary_big_endian"] {
+        let text = ply_text("property int64 id\n", "").replace("ascii", encoding).replace("face 1", "face 0");
+        let mut bytes = text.into_bytes();
+        for id in ids {
+            bytes.extend([0; 12]);
+            bytes.extend(if encoding.contains("big") { id.to_be_bytes() } else { id.to_le_bytes() });
+        }
+        let file = ply(&bytes).unwrap();
+        assert_eq!(named(&file, "id").values, Values::F64(ids.map(|id| id as f64).to_vec()), "{encoding}");
+    }
 }
