@@ -817,6 +817,11 @@ fn bad_inputs_are_named_in_one_sentence() {
         let stderr = workshop.fails(line, 3);
         assert!(error_line(&stderr).starts_with(expected), "`{line}`: {stderr}");
     }
+    let stderr = workshop.fails("encode points.obj", 3);
+    assert!(
+        stderr.starts_with("lwc: warning: points.obj: a point cloud: 2 points without faces\n"),
+        "{stderr}"
+    );
 }
 
 #[test]

@@ -309,3 +309,31 @@ fn ply_integers_of_64_bits_are_kept_in_either_byte_order() {
         assert_eq!(named(&file, "id").values, Values::F64(ids.map(|id| id as f64).to_vec()), "{encoding}");
     }
 }
+
+// --- What is no mesh -----------------------------------------------------------------------------------
+
+#[test]
+fn files_of_other_kinds_are_called_what_they_are() {
+    let utf16 = |text: &str, order: fn(u16) -> [u8; 2]| -> Vec<u8> {
+        format!("\u{feff}{text}").encode_utf16().flat_map(order).collect()
+    };
+    let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n";
+    let cases = [
+        (pointer.to_vec(), "a pointer of Git LFS, not the file itself: `git lfs pull` fetches that"),
+        (b"\r\n<!DOCTYPE html>\n<html>".to_vec(), "a page in HTML, not a mesh"),
+        (b"\xef\xbb\xbf<HTML lang=en>".to_vec(), "a page in HTML, not a mesh"),
+        (utf16(TRIANGLE, u16::to_le_bytes), "a text in UTF-16: save it as UTF-8"),
+        (utf16("solid x", u16::to_be_bytes), "a text in UTF-16: save it as UTF-8"),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    for (bytes, what) in cases {
+        for &format in Format::ALL {
+            let expected = format!("line 1: {what}");
+            assert_eq!(refusal(io::read_bytes(&bytes, format)), expected);
+            let path = folder.path().join("a").with_extension(format.extension());
+            std::fs::write(&path, &bytes).unwrap();
+            assert_eq!(refusal(io::read(&path)), expected);
+        }
+    }
+    assert!(obj("version 1\nv 0 0 0\n").is_ok() && obj(b"\xff\xfe").is_err());
+}
