@@ -28,7 +28,8 @@ pub struct ReadReport {
     /// thinned out.
     pub points_left_out: usize,
     /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
-    /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`).
+    /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`), or a few
+    /// words where it has no name (`2 bytes after the last triangle`).
     pub ignored: Vec<String>,
 }
 
