@@ -13,6 +13,7 @@ pub(super) fn parse_number(word: &[u8]) -> Option<f64> {
 
 /// What C libraries print for what is no finite number: `1.#INF`, `1.#QNAN` and `-1.#IND00` of Microsoft's until
 /// 2013, `-nan(ind)` of those that followed, `nan(0x1)`.
+#[cold]
 fn parse_not_finite(word: &str) -> Option<f64> {
     let unsigned = word.strip_prefix(['-', '+']).unwrap_or(word);
     if is_nan_with_payload(unsigned) {

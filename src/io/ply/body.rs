@@ -92,6 +92,12 @@ impl<'s, 'a> Body<'s, 'a> {
         Ok(())
     }
 
+    #[cold]
+    fn continue_element(&mut self) -> Result<(), Fault> {
+        self.is_continued = true;
+        self.next_line().map_err(|_| Fault::EndOfLine)
+    }
+
     /// Ends an element. One over several lines must end where a line ends; otherwise its first line is too short.
     pub fn end_element(&self) -> Result<(), Fault> {
         let is_cut = self.is_continued && self.rest < self.line.len();
@@ -103,8 +109,7 @@ impl<'s, 'a> Body<'s, 'a> {
             return Ok(scalar.value(self.raw(scalar)?));
         }
         if self.rest == self.line.len() {
-            self.next_line().map_err(|_| Fault::EndOfLine)?;
-            self.is_continued = true;
+            self.continue_element()?;
         }
         let rest = &self.line[self.rest..];
         let length = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
@@ -143,6 +148,7 @@ impl<'s, 'a> Body<'s, 'a> {
     }
 
     /// Adds the next number to an attribute.
+    #[inline]
     pub fn push(&mut self, values: &mut Values, scalar: Scalar) -> Result<(), Fault> {
         if !scalar.is_wide {
             values.push_bits(self.bits(scalar)?);

@@ -28,6 +28,7 @@ impl Scalar {
         Some(Self { kept, is_wide })
     }
 
+    #[inline]
     pub fn num_bytes(self) -> usize {
         if self.is_wide { 8 } else { self.kept.num_bytes() }
     }
@@ -46,6 +47,7 @@ impl Scalar {
     }
 
     /// Whether an integer is one of the type it is kept in.
+    #[inline]
     pub fn fits(self, number: f64) -> bool {
         let highest = self.kept.one();
         let is_signed = matches!(self.kept, ComponentType::I8 | ComponentType::I16 | ComponentType::I32);
@@ -54,6 +56,7 @@ impl Scalar {
     }
 
     /// The bits of an integer that fits.
+    #[inline]
     pub fn integer_bits(self, number: f64) -> u64 {
         number as i64 as u64 & (u64::MAX >> (64 - 8 * self.kept.num_bytes()))
     }

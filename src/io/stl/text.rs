@@ -53,9 +53,10 @@ impl Parser {
         if line.text.contains(&0) {
             return Err(bad("neither a text nor a binary file of the size it declares"));
         }
-        match (statement(line.text), self.is_in_loop) {
+        let mut words = words(line.text);
+        match (statement(&mut words), self.is_in_loop) {
             (Statement::Vertex, true) => {
-                let position = position(line.text).ok_or_else(|| bad("a vertex needs three numbers"))?;
+                let position = position(words).ok_or_else(|| bad("a vertex needs three numbers"))?;
                 self.corners.push(self.welder.vertex(position, Place::Line(line.number))?);
             }
             (Statement::BeginLoop, false) => self.is_in_loop = true,
@@ -87,8 +88,7 @@ impl Parser {
     }
 }
 
-fn statement(line: &[u8]) -> Statement {
-    let mut words = words(line);
+fn statement<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Statement {
     let Some(keyword) = words.next() else { return Statement::Else };
     let is = |name: &str| keyword.eq_ignore_ascii_case(name.as_bytes());
     if is("vertex") {
@@ -120,8 +120,8 @@ fn end_of(what: &[u8]) -> Statement {
     }
 }
 
-fn position(line: &[u8]) -> Option<[f64; 3]> {
-    let mut words = words(line).skip(1);
+/// Three numbers, which follow the keyword.
+fn position<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<[f64; 3]> {
     let mut position = [0.0; 3];
     for coordinate in &mut position {
         *coordinate = words.next().and_then(parse_number)?;
