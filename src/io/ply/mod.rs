@@ -125,8 +125,9 @@ fn checked_index(
     element: &Element,
     index: u64,
 ) -> Result<u32, ReadError> {
-    if number >= 0.0 && number < f64::from(num_vertices) && number.fract() == 0.0 {
-        return Ok(number as u32);
+    let found = number as u32;
+    if f64::from(found) == number && found < num_vertices {
+        return Ok(found);
     }
     let Element { name, count, .. } = element;
     let message = format!(
