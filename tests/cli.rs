@@ -782,6 +782,18 @@ fn compare_takes_meshes_and_streams() {
     assert!(error_line(&stderr).contains("the second mesh has no vertices"));
 }
 
+#[test]
+fn normals_that_are_not_finite_are_told_of() {
+    let workshop = Workshop::new();
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn -nan(ind) 0 1\nvn 0 0 1\nf 1//1 2//2 3//2\n";
+    fs::write(workshop.path("nan.obj"), text).unwrap();
+    let warning = |line: &str| workshop.ok(line).1.lines().next().unwrap_or_default().to_owned();
+    let expected = "lwc: warning: nan.obj: 1 value of attributes left out: not finite";
+    assert_eq!(warning("encode nan.obj -o a.lwc"), expected);
+    let expected = "lwc: warning: nan.obj: 1 normal or texture coordinate kept: not finite";
+    assert_eq!(warning("encode nan.obj -o b.lwc --lossless"), expected);
+}
+
 // --- other failures ---
 
 #[test]
@@ -817,6 +829,11 @@ fn bad_inputs_are_named_in_one_sentence() {
         let stderr = workshop.fails(line, 3);
         assert!(error_line(&stderr).starts_with(expected), "`{line}`: {stderr}");
     }
+    let stderr = workshop.fails("encode points.obj", 3);
+    assert!(
+        stderr.starts_with("lwc: warning: points.obj: a point cloud: 2 points without faces\n"),
+        "{stderr}"
+    );
 }
 
 #[test]

@@ -537,11 +537,83 @@ fn refusals_name_the_part_and_the_cause() {
     assert_eq!(refusal(read(&packed)), "accessor 0: compressed with EXT_meshopt_compression");
 
     let text = |text: &str| refusal(io::read_bytes(text.as_bytes(), Format::Gltf));
-    assert_eq!(text("{\n\"asset\": {}}"), "line 1: glTF version ``");
-    assert_eq!(text("{\"asset\": {\"version\": \"1.0\"}}"), "line 1: glTF version `1.0`");
+    assert_eq!(text("{\n\"asset\": {}}"), "line 1: glTF version ``, and only 2.0 is read");
+    assert_eq!(
+        text("{\"asset\": {\"version\": \"1.0\"}}"),
+        "line 1: glTF version `1.0`, and only 2.0 is read"
+    );
     assert!(text("{\n\n]").starts_with("line 3: not a glTF document: "), "{}", text("{\n\n]"));
     assert!(text("").starts_with("line 1: not a glTF document: "));
     assert!(text(&"[".repeat(100_000)).contains("not a glTF document"));
+}
+
+// --- What other programs write -------------------------------------------------------------------------
+
+/// A GLB of these chunks.
+fn glb(version: u32, json: &[u8], binary: &[u8]) -> Vec<u8> {
+    let mut bytes = b"glTF".to_vec();
+    let size = |chunk: &[u8]| (chunk.len() as u32).to_le_bytes();
+    bytes.extend(version.to_le_bytes());
+    bytes.extend(((12 + 8 + json.len() + 8 + binary.len()) as u32).to_le_bytes());
+    for (chunk, kind) in [(json, b"JSON"), (binary, b"BIN\0")] {
+        bytes.extend(size(chunk));
+        bytes.extend(kind);
+        bytes.extend(chunk);
+    }
+    bytes
+}
+
+#[test]
+fn zero_strides_and_nulls_are_as_if_absent() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE);
+    let index = model.bytes("SCALAR", 1, &[0, 1, 2]);
+    let mut primitive = json!({ "attributes": { "POSITION": position }, "indices": index });
+    let expected = model.read(one_mesh(json!([primitive]))).unwrap();
+    let nothing = ["material", "mode", "targets", "extensions"];
+    nothing.iter().for_each(|key| primitive[key] = Value::Null);
+    primitive["attributes"]["NORMAL"] = Value::Null;
+    let mut document = model.document(one_mesh(json!([primitive])));
+    for view in document["bufferViews"].as_array_mut().unwrap() {
+        view["byteStride"] = 0.into();
+        view["extensions"] = Value::Null;
+    }
+    for accessor in document["accessors"].as_array_mut().unwrap() {
+        ["byteOffset", "normalized", "sparse"].iter().for_each(|key| accessor[key] = Value::Null);
+    }
+    document["bufferViews"][0]["byteOffset"] = Value::Null;
+    document["meshes"][0]["name"] = Value::Null;
+    let of_node = ["name", "children", "matrix", "rotation", "extensions"];
+    of_node.iter().for_each(|key| document["nodes"][0][key] = Value::Null);
+    let lists =
+        ["extensionsUsed", "extensionsRequired", "materials", "images", "animations", "skins", "cameras"];
+    lists.iter().for_each(|key| document[key] = Value::Null);
+    assert_eq!(read(&document).unwrap(), expected);
+    document["accessors"][0]["count"] = Value::Null;
+    assert!(refusal(read(&document)).contains("not a glTF document"));
+}
+
+#[test]
+fn zeros_behind_the_text_of_a_binary_file_are_padding() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let mut document = model.document(one_mesh(json!([{ "attributes": { "POSITION": position } }])));
+    document["buffers"][0].as_object_mut().unwrap().remove("uri");
+    let text = document.to_string().into_bytes();
+    let read = |text: &[u8]| io::read_bytes(&glb(2, text, &model.buffer), Format::Glb);
+    let expected = read(&text).unwrap();
+    assert_eq!(read(&[&text[..], b"\0\0\0"].concat()).unwrap(), expected);
+    assert!(refusal(read(&[&text[..], b"\0\0x"].concat())).contains("trailing characters"));
+    assert!(refusal(read(b"\0\0\0\0")).contains("not a glTF document"));
+}
+
+#[test]
+fn documents_of_version_1_are_called_that() {
+    let text = r#"{ "accessors": {}, "bufferViews": { "a": {} }, "meshes": { "m": {} }, "scenes": {} }"#;
+    let refused = refusal(io::read_bytes(text.as_bytes(), Format::Gltf));
+    assert_eq!(refused, "line 1: glTF version `1.0`, and only 2.0 is read");
+    let refused = refusal(io::read_bytes(&glb(1, b"{}", b""), Format::Glb));
+    assert_eq!(refused, "byte 4: glTF version `1`, and only 2.0 is read");
 }
 
 #[test]

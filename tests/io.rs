@@ -236,7 +236,7 @@ fn obj_vertices_keep_order_and_number_across_seams_groups_and_materials() {
     assert_eq!(file.mesh.triangles(), [[4, 2, 3], [1, 2, 4], [1, 2, 3], [1, 3, 4]]);
     assert_eq!(file.report.polygons_triangulated, 1);
     assert_eq!(file.report.faces_skipped, 0);
-    assert_eq!(file.report.ignored, ["v.more", "l", "p"]);
+    assert_eq!(file.report.ignored, ["weights of vertices", "l", "p"]);
 }
 
 #[test]

@@ -66,6 +66,10 @@ fn with_hint(error: ReadError) -> anyhow::Error {
 
 fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
     let report = &file.report;
+    if file.mesh.num_triangles() == 0 && file.mesh.num_vertices() > 0 {
+        let points = counted(file.mesh.num_vertices(), "point", "points");
+        ui.warn(name, &format!("a point cloud: {points} without faces"));
+    }
     if report.polygons_triangulated > 0 {
         let polygons = counted(report.polygons_triangulated, "polygon", "polygons");
         ui.warn(name, &format!("{polygons} cut into triangles"));

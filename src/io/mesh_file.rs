@@ -30,7 +30,8 @@ pub struct ReadReport {
     /// LAS only: points flagged as withheld, which counts as deleted. They are left out.
     pub points_withheld: usize,
     /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
-    /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`).
+    /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`), or a few
+    /// words where it has no name (`2 bytes after the last triangle`).
     pub ignored: Vec<String>,
 }
 

@@ -20,6 +20,7 @@ mod atomic;
 mod builder;
 mod counter;
 mod error;
+mod foreign;
 mod format;
 #[cfg(feature = "gltf")]
 mod gltf;

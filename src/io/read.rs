@@ -1,6 +1,7 @@
 //! Meshes from files of any format.
 
 use super::error::ReadError;
+use super::foreign;
 use super::format::Format;
 #[cfg(feature = "gltf")]
 use super::gltf;
@@ -154,6 +155,7 @@ pub fn read_terrain_bytes(bytes: &[u8], options: &TerrainOptions) -> Result<Mesh
 /// # Errors
 /// As [`read`].
 pub fn read_bytes(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
+    foreign::check(&bytes[..bytes.len().min(foreign::HEAD_BYTES)])?;
     match format {
         #[cfg(feature = "gltf")]
         Format::Glb | Format::Gltf => gltf::read(bytes, None)?.merge(),

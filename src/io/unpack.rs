@@ -2,6 +2,7 @@
 
 use super::counter::Counter;
 use super::error::ReadError;
+use super::foreign;
 use super::format::{Format, format_and_compression};
 use super::source::Source;
 use std::{
@@ -46,7 +47,20 @@ impl ReadOptions {
     }
 
     /// The (unpacked) bytes of a file, and what its ending says they are. Tells `progress` which share of them is read.
+    ///
+    /// # Errors
+    /// If it cannot be opened, or is plainly something else.
     pub(super) fn open<'a>(
+        &self,
+        path: &Path,
+        progress: &'a dyn Fn(f64),
+    ) -> Result<(Source<'a>, Format), ReadError> {
+        let (mut source, format) = self.open_any(path, progress)?;
+        foreign::check(source.peek(foreign::HEAD_BYTES))?;
+        Ok((source, format))
+    }
+
+    fn open_any<'a>(
         &self,
         path: &Path,
         progress: &'a dyn Fn(f64),

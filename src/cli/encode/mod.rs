@@ -14,6 +14,7 @@ use super::verify;
 use anyhow::Context;
 use args::Encode;
 use lwc::io::{Format, MeshFile};
+use lwc::mesh::{Attribute, Attributes, Semantic};
 use lwc::{EncodeOptions, Encoded, RepairReport};
 use report::Report;
 use std::io;
@@ -43,6 +44,9 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let (encoded, options) = encode(&file, args, encoding).with_context(|| name.clone())?;
     let encode_seconds = start.elapsed().as_secs_f64();
     warn_about(&name, &encoded, ui);
+    if args.lossless {
+        warn_of_what_is_not_finite(&name, &file.attributes, ui);
+    }
 
     if args.verify {
         let start = Instant::now();
@@ -111,6 +115,20 @@ fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
     let attributes = std::mem::take(&mut file.attributes);
     let names = attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
     names.chain(attributes.material_libraries.first().map(|_| "mtllib".to_owned())).collect()
+}
+
+/// With `--lossless` even these are kept, and other programs may choke on them.
+fn warn_of_what_is_not_finite(name: &str, attributes: &Attributes, ui: &Ui) {
+    let is_usual = |a: &&Attribute| matches!(a.semantic, Semantic::Normal | Semantic::TexCoord(_));
+    let is_finite = |a: &Attribute, entry: usize| {
+        (0..a.num_components).all(|k| a.number(entry, k).is_none_or(f64::is_finite))
+    };
+    let not_finite = |a: &Attribute| (0..a.num_entries()).filter(|&entry| !is_finite(a, entry)).count();
+    let num: usize = attributes.list.iter().filter(is_usual).map(not_finite).sum();
+    if num > 0 {
+        let values = counted(num, "normal or texture coordinate", "normals or texture coordinates");
+        ui.warn(name, &format!("{values} kept: not finite"));
+    }
 }
 
 /// Fewer vertices need no beginnings.

@@ -169,7 +169,8 @@ impl<'a> Store<'a> {
         if let (Some(name), true) = (compression, (buffer.len() as u64) < view.byte_length) {
             return Err(ReadError::Unsupported { place, message: format!("compressed with {name}") });
         }
-        let stride = view.byte_stride.unwrap_or(size as u64);
+        // Some programs write 0 for elements without gaps.
+        let stride = view.byte_stride.filter(|&stride| stride > 0).unwrap_or(size as u64);
         if stride < size as u64 {
             return Err(bad(format!("elements of {size} bytes every {stride} bytes")));
         }

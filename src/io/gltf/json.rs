@@ -1,5 +1,6 @@
-//! The parts of a glTF document that we read.
+//! The parts of a glTF document that we read. What is `null` is as if it were not there.
 
+use super::nulls::{or_default, without_nulls};
 use serde::{Deserialize, de::IgnoredAny};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -10,28 +11,45 @@ pub(super) type Extensions = BTreeMap<String, IgnoredAny>;
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub(super) struct Document {
+    #[serde(deserialize_with = "or_default")]
     pub asset: Asset,
+    #[serde(deserialize_with = "or_default")]
     pub extensions_required: Vec<String>,
+    #[serde(deserialize_with = "or_default")]
     pub extensions_used: Vec<String>,
+    #[serde(deserialize_with = "or_default")]
     pub buffers: Vec<Buffer>,
+    #[serde(deserialize_with = "or_default")]
     pub buffer_views: Vec<BufferView>,
+    #[serde(deserialize_with = "or_default")]
     pub accessors: Vec<Accessor>,
+    #[serde(deserialize_with = "or_default")]
     pub meshes: Vec<Mesh>,
+    #[serde(deserialize_with = "or_default")]
     pub nodes: Vec<Node>,
+    #[serde(deserialize_with = "or_default")]
     pub scenes: Vec<Scene>,
     pub scene: Option<usize>,
+    #[serde(deserialize_with = "or_default")]
     pub materials: Vec<Map<String, Value>>,
+    #[serde(deserialize_with = "or_default")]
     pub textures: Vec<Map<String, Value>>,
+    #[serde(deserialize_with = "or_default")]
     pub images: Vec<Map<String, Value>>,
+    #[serde(deserialize_with = "or_default")]
     pub samplers: Vec<Map<String, Value>>,
+    #[serde(deserialize_with = "or_default")]
     pub animations: Vec<IgnoredAny>,
+    #[serde(deserialize_with = "or_default")]
     pub skins: Vec<IgnoredAny>,
+    #[serde(deserialize_with = "or_default")]
     pub cameras: Vec<IgnoredAny>,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub(super) struct Asset {
+    #[serde(deserialize_with = "or_default")]
     pub version: String,
     pub min_version: Option<String>,
 }
@@ -47,11 +65,11 @@ pub(super) struct Buffer {
 #[serde(rename_all = "camelCase")]
 pub(super) struct BufferView {
     pub buffer: usize,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub byte_offset: u64,
     pub byte_length: u64,
     pub byte_stride: Option<u64>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub extensions: Extensions,
 }
 
@@ -59,10 +77,10 @@ pub(super) struct BufferView {
 #[serde(rename_all = "camelCase")]
 pub(super) struct Accessor {
     pub buffer_view: Option<usize>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub byte_offset: u64,
     pub component_type: u32,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub normalized: bool,
     pub count: u64,
     #[serde(rename = "type")]
@@ -81,7 +99,7 @@ pub(super) struct Sparse {
 #[serde(rename_all = "camelCase")]
 pub(super) struct SparsePart {
     pub buffer_view: usize,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub byte_offset: u64,
     /// Of the indices only.
     pub component_type: Option<u32>,
@@ -89,27 +107,30 @@ pub(super) struct SparsePart {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Mesh {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub name: String,
     pub primitives: Vec<Primitive>,
 }
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Primitive {
+    #[serde(deserialize_with = "without_nulls")]
     pub attributes: BTreeMap<String, usize>,
     pub indices: Option<usize>,
     pub material: Option<usize>,
     pub mode: Option<u32>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub targets: Vec<IgnoredAny>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub extensions: Extensions,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Node {
+    #[serde(deserialize_with = "or_default")]
     pub name: String,
+    #[serde(deserialize_with = "or_default")]
     pub children: Vec<usize>,
     pub mesh: Option<usize>,
     /// Column by column.
@@ -117,11 +138,13 @@ pub(super) struct Node {
     pub translation: Option<[f64; 3]>,
     pub rotation: Option<[f64; 4]>,
     pub scale: Option<[f64; 3]>,
+    #[serde(deserialize_with = "or_default")]
     pub extensions: Extensions,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Scene {
+    #[serde(deserialize_with = "or_default")]
     pub nodes: Vec<usize>,
 }

@@ -10,6 +10,7 @@ mod json;
 mod materials;
 mod mesh;
 mod nodes;
+mod nulls;
 mod source;
 mod write;
 

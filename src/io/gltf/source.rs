@@ -3,8 +3,10 @@
 use super::json::Document;
 use crate::io::{MAX_FILE_BYTES, Place, ReadError, text::quoted};
 use base64::Engine;
+use serde::{Deserialize, de::IgnoredAny};
 use std::{
     borrow::Cow,
+    collections::BTreeMap,
     fs::File,
     io::Read,
     path::{Component, Path},
@@ -29,8 +31,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Document, Option<&[u8]>), ReadError
     let bad = |at: usize, what: String| Err(ReadError::syntax(Place::Byte(at), what));
     let (version, length) = (word(4)?, word(8)? as usize);
     if version != 2 {
-        let message = format!("GLB version {version}");
-        return Err(ReadError::Unsupported { place: Place::Byte(4), message });
+        return Err(other_version(Place::Byte(4), &version.to_string()));
     }
     if length > bytes.len() {
         return bad(8, format!("the file declares {length} bytes and has {}", bytes.len()));
@@ -51,6 +52,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Document, Option<&[u8]>), ReadError
         at += 8 + size;
     }
     let Some((start, text)) = chunks[0] else { return Err(cut(length)) };
+    // Blanks should pad it; some programs take zeros.
+    let num_zeros = text.iter().rev().take_while(|&&byte| byte == 0).count();
+    let text = &text[..text.len() - num_zeros];
     Ok((parse_text(text, Some(start))?, chunks[1].map(|(_, binary)| binary)))
 }
 
@@ -62,30 +66,54 @@ fn cut(length: usize) -> ReadError {
 fn parse_text(text: &[u8], start: Option<usize>) -> Result<Document, ReadError> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut document: Document = serde_json::from_slice(text).map_err(|error| {
-        let place = match start {
-            None => Place::Line(error.line().max(1)),
-            Some(start) => {
-                let lines = text.split_inclusive(|&b| b == b'\n');
-                let before: usize = lines.take(error.line().saturating_sub(1)).map(<[u8]>::len).sum();
-                Place::Byte(start + before + error.column().saturating_sub(1))
-            }
-        };
-        let message = error.to_string();
-        // The place is ours.
-        let message = message.split(" at line ").next().unwrap_or_default();
-        ReadError::syntax(place, format!("not a glTF document: {message}"))
+        if is_version_1(text) {
+            return other_version(start.map_or(Place::Line(1), Place::Byte), "1.0");
+        }
+        damage(&error, text, start)
     })?;
     let version = document.asset.min_version.as_ref().unwrap_or(&document.asset.version);
     if version.split('.').next() != Some("2")
         || document.asset.min_version.as_ref().is_some_and(|v| v != "2.0")
     {
-        let message = format!("glTF version {}", quoted(version.as_bytes()));
-        return Err(ReadError::Unsupported { place: start.map_or(Place::Line(1), Place::Byte), message });
+        return Err(other_version(start.map_or(Place::Line(1), Place::Byte), version));
     }
     let meshes = document.meshes.iter_mut().map(|mesh| &mut mesh.name);
     let nodes = document.nodes.iter_mut().map(|node| &mut node.name);
     meshes.chain(nodes).for_each(shorten);
     Ok(document)
+}
+
+/// Why a text is no document.
+fn damage(error: &serde_json::Error, text: &[u8], start: Option<usize>) -> ReadError {
+    let place = match start {
+        None => Place::Line(error.line().max(1)),
+        Some(start) => {
+            let lines = text.split_inclusive(|&b| b == b'\n');
+            let before: usize = lines.take(error.line().saturating_sub(1)).map(<[u8]>::len).sum();
+            Place::Byte(start + before + error.column().saturating_sub(1))
+        }
+    };
+    let message = error.to_string();
+    // The place is ours.
+    let message = message.split(" at line ").next().unwrap_or_default();
+    ReadError::syntax(place, format!("not a glTF document: {message}"))
+}
+
+fn other_version(place: Place, version: &str) -> ReadError {
+    let message = format!("glTF version {}, and only 2.0 is read", quoted(version.as_bytes()));
+    ReadError::Unsupported { place, message }
+}
+
+/// Whether a text has its buffers by name, as glTF 1.0.
+fn is_version_1(text: &[u8]) -> bool {
+    #[derive(Deserialize)]
+    struct Former {
+        #[serde(rename = "bufferViews")]
+        _views: BTreeMap<String, IgnoredAny>,
+        #[serde(rename = "meshes")]
+        _meshes: BTreeMap<String, IgnoredAny>,
+    }
+    serde_json::from_slice::<Former>(text).is_ok()
 }
 
 pub(super) fn shorten(name: &mut String) {

@@ -1,27 +1,16 @@
 //! What vertices, faces and their corners have besides positions.
 
-use super::{references::References, statements::Statement};
+use super::{
+    colours::Colours,
+    references::References,
+    rows::Rows,
+    statements::{COLOURS, Statement},
+};
 use crate::{
     io::{Place, ReadError, ReadReport, builder::fan, text::parse_number},
     mesh::{Attribute, Attributes, Domain, NO_ENTRY, Semantic, Values},
 };
 use std::collections::HashMap;
-
-/// Rows of elements in their order. What is not set has none.
-#[derive(Default)]
-struct Rows(Vec<u32>);
-
-impl Rows {
-    /// Elements are set in order, each at most once.
-    fn set(&mut self, element: usize, row: u32) {
-        self.0.resize(element, NO_ENTRY);
-        self.0.push(row);
-    }
-
-    fn get(&self, element: usize) -> u32 {
-        self.0.get(element).copied().unwrap_or(NO_ENTRY)
-    }
-}
 
 /// Values that corners refer to: `vt` or `vn`.
 #[derive(Default)]
@@ -31,6 +20,8 @@ struct Table {
     rows: Rows,
     /// Values may follow their use.
     references: References,
+    /// The line of the first corner that counts back from no values.
+    before_values: Option<usize>,
 }
 
 impl Table {
@@ -55,22 +46,66 @@ impl Table {
         Ok(num_words > 3)
     }
 
-    /// Notes what a corner has between its slashes.
-    fn refer(&mut self, corner: usize, word: &[u8], line: usize) -> Result<(), &'static str> {
+    /// Notes what a corner has between its slashes. Some programs write 0 where there is nothing.
+    fn refer(
+        &mut self,
+        corner: usize,
+        word: &[u8],
+        line: usize,
+        report: &mut ReadReport,
+    ) -> Result<(), &'static str> {
         if word.is_empty() {
             return Ok(());
         }
+        if word == b"0" {
+            report.ignore("index 0 of texture coordinates or normals");
+            return Ok(());
+        }
         let row = self.references.resolve(word, self.values.len(), line);
-        let row = row.ok_or("an index is not a whole number")?;
-        self.rows.set(corner, row.ok_or("there is no such texture coordinate or normal")?);
+        match row.ok_or("an index is not a whole number")? {
+            Some(row) => self.rows.set(corner, row),
+            None if self.values.is_empty() => self.before_values = self.before_values.or(Some(line)),
+            None => return Err("there is no such texture coordinate or normal"),
+        }
         Ok(())
+    }
+
+    /// Checks at the end that the values which corners refer to exist. Where there are none at all, nothing is
+    /// referred to.
+    fn check_references(&self, what: &str, report: &mut ReadReport) -> Result<(), ReadError> {
+        let num_values = self.values.len();
+        if num_values >= NO_ENTRY as usize {
+            return Err(ReadError::TooLarge { message: format!("{num_values} values of one kind") });
+        }
+        let beyond = self.references.first_beyond(num_values);
+        if num_values == 0 {
+            if beyond.is_some() || self.before_values.is_some() {
+                report.ignore(&format!("indices of {what}s, of which there are none"));
+            }
+            return Ok(());
+        }
+        let (line, message) = match (self.before_values, beyond) {
+            (Some(line), _) => (line, format!("there is no such {what} above")),
+            (_, Some((line, index))) => {
+                (line, format!("there is no such {what}, of {num_values}: `{index}`"))
+            }
+            _ => return Ok(()),
+        };
+        Err(ReadError::syntax(Place::Line(line), message))
+    }
+
+    /// How many numbers of each value say something. The third of texture coordinates is often 0 everywhere.
+    fn num_components(&self, semantic: Semantic) -> usize {
+        let is_flat =
+            matches!(semantic, Semantic::TexCoord(_)) && self.values.iter().all(|value| value[2] == 0.0);
+        if is_flat { self.num_components.min(2) } else { self.num_components }
     }
 
     fn into_attribute(self, name: &str, semantic: Semantic, corners: &[u32]) -> Option<Attribute> {
         if self.values.is_empty() {
             return None;
         }
-        let n = self.num_components;
+        let n = self.num_components(semantic);
         let values = self.values.iter().flat_map(|value| &value[..n]).copied().collect();
         let rows = corners.iter().map(|&corner| self.rows.get(corner as usize)).collect();
         let attribute = Attribute::new(name, semantic, Domain::Corner, n, Values::F64(values));
@@ -116,11 +151,9 @@ impl Names {
 /// Everything so far. Faces are counted as in the file, not as triangles.
 #[derive(Default)]
 pub(super) struct Gathered {
-    num_vertices: usize,
     num_faces: usize,
     num_corners: usize,
-    colours: Vec<f64>,
-    colour_rows: Rows,
+    colours: Colours,
     texture: Table,
     normals: Table,
     materials: Names,
@@ -137,27 +170,30 @@ impl Gathered {
         mut words: impl Iterator<Item = &'a [u8]>,
         report: &mut ReadReport,
     ) -> Result<(), &'static str> {
-        let vertex = self.num_vertices;
-        self.num_vertices += 1;
+        let mut colour = None;
         match [(); 4].map(|()| words.next()) {
             [None, ..] => {}
             [Some(r), Some(g), Some(b), None] => {
-                for word in [r, g, b] {
-                    self.colours.push(number(word).ok_or("a colour needs three numbers")?);
-                }
-                self.colour_rows.set(vertex, (self.colours.len() / 3 - 1) as u32);
+                let channel = |word| number(word).ok_or("a colour needs three numbers");
+                colour = Some([channel(r)?, channel(g)?, channel(b)?]);
             }
+            // The weight that all have who say nothing.
+            [Some(weight), None, ..] if number(weight) == Some(1.0) => {}
+            [Some(_), None, ..] => report.ignore("weights of vertices"),
             _ => report.ignore("v.more"),
         }
+        self.colours.vertex(colour);
         Ok(())
     }
 
     /// Takes the corners of an `f` statement.
-    pub fn face(&mut self, statement: &Statement) -> Result<(), &'static str> {
+    pub fn face(&mut self, statement: &Statement, report: &mut ReadReport) -> Result<(), &'static str> {
         for corner in statement.words().skip(1) {
             let mut indices = corner.split(|&byte| byte == b'/').skip(1);
-            self.texture.refer(self.num_corners, indices.next().unwrap_or_default(), statement.line)?;
-            self.normals.refer(self.num_corners, indices.next().unwrap_or_default(), statement.line)?;
+            for table in [&mut self.texture, &mut self.normals] {
+                let word = indices.next().unwrap_or_default();
+                table.refer(self.num_corners, word, statement.line, report)?;
+            }
             if indices.next().is_some() {
                 return Err("a corner of more than three indices");
             }
@@ -180,6 +216,7 @@ impl Gathered {
             b"g" => self.groups.begin(statement.name()),
             b"o" => self.objects.begin(statement.name()),
             b"s" => self.smoothing.begin(statement.name()),
+            COLOURS => self.colours.line(&statement.text[COLOURS.len()..], report),
             b"mtllib" => self.material_libraries.push(statement.name()),
             _ => {}
         }
@@ -187,25 +224,21 @@ impl Gathered {
     }
 
     /// Checks at the end that the values which corners refer to exist.
-    pub fn check_references(&self) -> Result<(), ReadError> {
+    pub fn check_references(&self, report: &mut ReadReport) -> Result<(), ReadError> {
         if self.num_corners >= NO_ENTRY as usize {
             return Err(ReadError::TooLarge { message: format!("{} corners", self.num_corners) });
         }
-        for (what, table) in [("texture coordinate", &self.texture), ("normal", &self.normals)] {
-            let num_values = table.values.len();
-            if num_values >= NO_ENTRY as usize {
-                return Err(ReadError::TooLarge { message: format!("{num_values} values of one kind") });
-            }
-            if let Some((line, index)) = table.references.first_beyond(num_values) {
-                let message = format!("there is no such {what}, of {num_values}: `{index}`");
-                return Err(ReadError::syntax(Place::Line(line), message));
-            }
-        }
-        Ok(())
+        self.texture.check_references("texture coordinate", report)?;
+        self.normals.check_references("normal", report)
     }
 
     /// The attributes of all triangles, after each face has been split into a fan.
-    pub fn into_attributes(self, num_corners: &[u32], num_triangles: usize) -> Attributes {
+    pub fn into_attributes(
+        self,
+        num_corners: &[u32],
+        num_triangles: usize,
+        report: &mut ReadReport,
+    ) -> Attributes {
         let has_corners = !(self.texture.values.is_empty() && self.normals.values.is_empty());
         let tables = [&self.materials, &self.groups, &self.objects, &self.smoothing];
         let has_names = tables.iter().any(|names| !names.names.is_empty());
@@ -225,11 +258,8 @@ impl Gathered {
             first = first.saturating_add(num);
         }
 
-        let colour =
-            Attribute::new("v.rgb", Semantic::Color(0), Domain::Vertex, 3, Values::F64(self.colours));
-        let colour = Attribute { indices: Some(self.colour_rows.0), ..colour };
         let list = [
-            Some(colour).filter(|colour| !colour.values.is_empty()),
+            self.colours.into_attribute(report),
             self.texture.into_attribute("vt", Semantic::TexCoord(0), &corners),
             self.normals.into_attribute("vn", Semantic::Normal, &corners),
             self.materials.into_attribute("usemtl", Semantic::Material, &faces),

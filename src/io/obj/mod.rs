@@ -5,8 +5,10 @@
 //! through the file once, statement by statement, so that a compressed file is never in memory as a whole.
 //! What vertices, faces and corners have in addition to positions is gathered separately ([`Gathered`]).
 
+mod colours;
 mod corner_tables;
 mod references;
+mod rows;
 mod statements;
 mod write;
 
@@ -20,7 +22,7 @@ use super::{
 };
 use corner_tables::Gathered;
 use references::References;
-use statements::{Statement, Statements};
+use statements::{COLOURS, Statement, Statements};
 
 /// The longest word that is passed over as a statement we do not know; anything else is damage.
 const MAX_KEYWORD_BYTES: usize = 32;
@@ -78,7 +80,7 @@ impl Parser {
             b"" => {}
             b"v" => self.vertex(statement)?,
             b"f" => self.face(statement)?,
-            b"vt" | b"vn" | b"usemtl" | b"g" | b"o" | b"s" | b"mtllib" => {
+            b"vt" | b"vn" | b"usemtl" | b"g" | b"o" | b"s" | b"mtllib" | COLOURS => {
                 self.gathered.statement(statement, &mut self.builder.report)?;
             }
             _ if keyword.len() <= MAX_KEYWORD_BYTES && keyword.iter().all(u8::is_ascii_graphic) => {
@@ -119,7 +121,7 @@ impl Parser {
         }
         self.num_corners.push(u32::try_from(self.corners.len()).map_err(|_| "too many corners")?);
         self.builder.push_polygon(&self.corners);
-        Ok(self.gathered.face(statement)?)
+        Ok(self.gathered.face(statement, &mut self.builder.report)?)
     }
 
     fn finish(self) -> Result<MeshFile, ReadError> {
@@ -129,8 +131,9 @@ impl Parser {
             let message = format!("there is no vertex `{index}`: the file has {num_vertices}");
             return Err(ReadError::syntax(Place::Line(line), message));
         }
-        gathered.check_references()?;
-        builder.attributes = gathered.into_attributes(&num_corners, builder.triangles.len());
+        gathered.check_references(&mut builder.report)?;
+        builder.attributes =
+            gathered.into_attributes(&num_corners, builder.triangles.len(), &mut builder.report);
         builder.finish()
     }
 }

@@ -1,6 +1,15 @@
 //! The statements of an OBJ file.
 
-use crate::io::{source::Source, text::words};
+use crate::io::{
+    source::Source,
+    text::{old_kind, words},
+};
+
+/// What ZBrush puts in front of colours, in what is a comment to all others.
+pub(super) const COLOURS: &[u8] = b"#MRGB";
+
+/// Keywords that a name follows.
+const BEFORE_NAMES: [&[u8]; 4] = [b"usemtl", b"o", b"g", b"mtllib"];
 
 /// One statement: a line, with those that continue it.
 pub(super) struct Statement<'a> {
@@ -45,20 +54,79 @@ impl<'s, 'a> Statements<'s, 'a> {
         self.source.skip_empty_lines();
         let first = self.source.line()?;
         let line = first.number;
+        if is_colours(first.text) {
+            self.text.extend_from_slice(first.text);
+            return Some(Statement { line, text: &self.text });
+        }
         let mut is_continued = append(&mut self.text, first.text);
         while is_continued && let Some(next) = self.source.line() {
-            self.text.push(b' ');
+            if !self.text.is_empty() {
+                self.text.push(b' ');
+            }
             is_continued = append(&mut self.text, next.text);
         }
         Some(Statement { line, text: &self.text })
     }
 }
 
+fn is_colours(line: &[u8]) -> bool {
+    line.strip_prefix(COLOURS).is_some_and(|rest| rest.first().is_none_or(u8::is_ascii_whitespace))
+}
+
 /// Adds a line to a statement, and returns whether another one follows.
 fn append(text: &mut Vec<u8>, line: &[u8]) -> bool {
+    // So that the keyword is where the text begins, however many lines there are.
+    let line = if text.is_empty() { line.trim_ascii_start() } else { line };
     // A backslash in a comment is the end of a path more often than a continuation.
-    let without_comment = line.split(|&b| b == b'#').next().unwrap_or_default();
+    let without_comment = without_comment(text, line);
     let continued = without_comment.strip_suffix(b"\\");
     text.extend_from_slice(continued.unwrap_or(without_comment));
     continued.is_some()
+}
+
+/// A line, which continues the statement `text`, up to its comment. Names may have a `#`.
+fn without_comment<'l>(text: &[u8], line: &'l [u8]) -> &'l [u8] {
+    let Some(first) = line.iter().position(|&byte| byte == b'#') else { return line };
+    if line[..first].trim_ascii_start().is_empty() {
+        return &line[..first];
+    }
+    if takes_name(if text.is_empty() { line } else { text }) {
+        return line;
+    }
+    let begins_comment = |&at: &usize| line[at] == b'#' && old_kind(&line[at.saturating_sub(2)..]).is_none();
+    (first..line.len()).find(begins_comment).map_or(line, |at| &line[..at])
+}
+
+/// Whether a statement that begins so has a name in it.
+fn takes_name(text: &[u8]) -> bool {
+    let is_next = |keyword: &&[u8]| {
+        let rest = text.strip_prefix(*keyword);
+        rest.is_some_and(|rest| rest.first().is_none_or(u8::is_ascii_whitespace))
+    };
+    BEFORE_NAMES.iter().any(is_next)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_begin_where_names_and_numbers_end() {
+        for (text, line, expected) in [
+            ("", "v 1 2 3#x", "v 1 2 3"),
+            ("", "# usemtl a", ""),
+            ("", "#usemtl a", ""),
+            ("", "usemtl Grey #1 # x", "usemtl Grey #1 # x"),
+            ("", "usemtl #1", "usemtl #1"),
+            ("", "usemtl#1", "usemtl"),
+            ("g ", "a#b", "a#b"),
+            ("g ", " # b", " "),
+            ("", "s 1 # on", "s 1 "),
+            ("", "vt 1.#QNAN -1.#ind00#x", "vt 1.#QNAN -1.#ind00"),
+            ("", "v 0 0 1.#x", "v 0 0 1."),
+        ] {
+            let found = without_comment(text.as_bytes(), line.as_bytes());
+            assert_eq!(String::from_utf8_lossy(found), expected, "{text}{line}");
+        }
+    }
 }

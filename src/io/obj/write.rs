@@ -131,7 +131,7 @@ fn write_number(out: &mut impl Write, number: f64) -> io::Result<()> {
 
 /// Writes a statement whose argument is a name, with what would end the name replaced.
 fn write_name(out: &mut impl Write, keyword: &str, name: &str) -> io::Result<()> {
-    let name: String = name.chars().map(|c| if matches!(c, '\n' | '\r' | '#') { '_' } else { c }).collect();
+    let name: String = name.chars().map(|c| if matches!(c, '\n' | '\r') { '_' } else { c }).collect();
     // A backslash at the very end would continue the line.
     let end = if name.ends_with('\\') { " " } else { "" };
     match name.as_str() {

@@ -1,13 +1,16 @@
 //! The body: numbers in a text or in either byte order.
 
-use super::header::{Element, Encoding, Property};
+use super::{
+    header::{Element, Encoding, Property},
+    scalar::{Scalar, push_wide},
+};
 use crate::{
     io::{
         Place, ReadError,
         source::Source,
         text::{parse_number, quoted},
     },
-    mesh::ComponentType,
+    mesh::{ComponentType, Values},
 };
 use std::ops::Range;
 
@@ -21,6 +24,19 @@ pub(super) struct Body<'s, 'a> {
     line: Vec<u8>,
     rest: usize,
     word: Range<usize>,
+    /// Where the current element of a text begins, and whether it goes on in another line.
+    first_line: usize,
+    is_continued: bool,
+    /// Whether an integer of 64 bits was not kept exactly.
+    pub has_rounded: bool,
+}
+
+/// Integers below this one are exact as float64.
+const FIRST_INEXACT: f64 = (1u64 << 53) as f64;
+
+/// Much faster than `fract` where that is a call.
+fn is_whole(number: f64) -> bool {
+    if number.abs() < FIRST_INEXACT { number as i64 as f64 == number } else { number.is_finite() }
 }
 
 /// Why there is no next number.
@@ -34,7 +50,17 @@ pub(super) enum Fault {
 impl<'s, 'a> Body<'s, 'a> {
     pub fn new(encoding: Encoding, source: &'s mut Source<'a>) -> Self {
         let element_offset = source.offset();
-        Self { source, encoding, element_offset, line: Vec::new(), rest: 0, word: 0..0 }
+        Self {
+            source,
+            encoding,
+            element_offset,
+            line: Vec::new(),
+            rest: 0,
+            word: 0..0,
+            first_line: 0,
+            is_continued: false,
+            has_rounded: false,
+        }
     }
 
     fn is_text(&self) -> bool {
@@ -52,30 +78,51 @@ impl<'s, 'a> Body<'s, 'a> {
             self.element_offset = self.source.offset();
             return Ok(());
         }
+        let found = self.next_line();
+        self.first_line = self.source.num_lines();
+        self.is_continued = false;
+        found
+    }
+
+    /// Takes the next line of a text that is not blank.
+    fn next_line(&mut self) -> Result<(), Fault> {
         self.line.clear();
+        self.rest = 0;
+        self.word = 0..0;
         while self.line.is_empty() {
             self.source.skip_empty_lines();
             let line = self.source.line().ok_or(Fault::EndOfFile)?;
             self.line.extend_from_slice(line.text.trim_ascii());
         }
-        self.rest = 0;
         Ok(())
     }
 
-    pub fn number(&mut self, scalar: ComponentType) -> Result<f64, Fault> {
+    #[cold]
+    fn continue_element(&mut self) -> Result<(), Fault> {
+        self.is_continued = true;
+        self.next_line().map_err(|_| Fault::EndOfLine)
+    }
+
+    /// Ends an element. One over several lines must end where a line ends; otherwise its first line is too short.
+    pub fn end_element(&self) -> Result<(), Fault> {
+        let is_cut = self.is_continued && self.rest < self.line.len();
+        if is_cut { Err(Fault::EndOfLine) } else { Ok(()) }
+    }
+
+    pub fn number(&mut self, scalar: Scalar) -> Result<f64, Fault> {
         if !self.is_text() {
             return Ok(scalar.value(self.raw(scalar)?));
+        }
+        if self.rest == self.line.len() {
+            self.continue_element()?;
         }
         let rest = &self.line[self.rest..];
         let length = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         let blanks = rest.len() - length - rest[length..].trim_ascii_start().len();
         self.word = self.rest..self.rest + length;
         self.rest = self.word.end + blanks;
-        if self.word.is_empty() {
-            return Err(Fault::EndOfLine);
-        }
         let number = parse_number(self.word()).ok_or(Fault::NotANumber)?;
-        let fits = !scalar.is_integer() || number.fract() == 0.0;
+        let fits = !scalar.is_integer() || is_whole(number);
         if fits { Ok(number) } else { Err(Fault::NotANumber) }
     }
 
@@ -84,31 +131,42 @@ impl<'s, 'a> Body<'s, 'a> {
     }
 
     /// The next number as the bits of its type. In a text it must be a number that the type has.
-    pub fn bits(&mut self, scalar: ComponentType) -> Result<u64, Fault> {
+    pub fn bits(&mut self, scalar: Scalar) -> Result<u64, Fault> {
         if !self.is_text() {
             return self.raw(scalar);
         }
         let number = self.number(scalar)?;
-        // Through float64 a float32 would be rounded twice.
-        let as_float = || std::str::from_utf8(self.word()).ok()?.parse::<f32>().ok();
-        let range = |lowest: f64, highest: f64| lowest <= number && number <= highest;
-        let integer = |fits: bool| if fits { Ok(number as i64 as u64) } else { Err(Fault::NotANumber) };
-        match scalar {
-            // NaN of either sign is written alike.
-            _ if number.is_nan() && scalar == ComponentType::F32 => Ok(u64::from(f32::NAN.to_bits())),
-            _ if number.is_nan() => Ok(f64::NAN.to_bits()),
-            ComponentType::F32 => Ok(u64::from(as_float().ok_or(Fault::NotANumber)?.to_bits())),
-            ComponentType::F64 => Ok(number.to_bits()),
-            ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => integer(range(0.0, scalar.one())),
-            ComponentType::I8 | ComponentType::I16 | ComponentType::I32 => {
-                let fits = range(-scalar.one() - 1.0, scalar.one());
-                integer(fits).map(|bits| bits & (u64::MAX >> (64 - 8 * scalar.num_bytes())))
+        match scalar.kept {
+            // Through float64 a float32 would be rounded twice.
+            ComponentType::F32 if number.is_finite() => {
+                let float = std::str::from_utf8(self.word()).ok().and_then(|word| word.parse::<f32>().ok());
+                Ok(u64::from(float.ok_or(Fault::NotANumber)?.to_bits()))
             }
+            // NaN of either sign is written alike.
+            ComponentType::F32 if number.is_nan() => Ok(u64::from(f32::NAN.to_bits())),
+            ComponentType::F32 => Ok(u64::from((number as f32).to_bits())),
+            ComponentType::F64 if number.is_nan() => Ok(f64::NAN.to_bits()),
+            ComponentType::F64 => Ok(number.to_bits()),
+            _ if scalar.fits(number) => Ok(scalar.integer_bits(number)),
+            _ => Err(Fault::NotANumber),
         }
     }
 
+    /// Adds the next number to an attribute.
+    #[inline]
+    pub fn push(&mut self, values: &mut Values, scalar: Scalar) -> Result<(), Fault> {
+        if !scalar.is_wide {
+            values.push_bits(self.bits(scalar)?);
+            return Ok(());
+        }
+        let number = self.number(scalar)?;
+        self.has_rounded |= number.abs() >= FIRST_INEXACT;
+        push_wide(values, scalar, number);
+        Ok(())
+    }
+
     /// The bits of the next number of a binary file, whose end is the only fault.
-    fn raw(&mut self, scalar: ComponentType) -> Result<u64, Fault> {
+    fn raw(&mut self, scalar: Scalar) -> Result<u64, Fault> {
         let raw = self.source.take(scalar.num_bytes()).ok_or(Fault::EndOfFile)?;
         let push = |bits: u64, &byte: &u8| bits << 8 | u64::from(byte);
         let is_big_endian = self.encoding == Encoding::BigEndian;
@@ -116,7 +174,7 @@ impl<'s, 'a> Body<'s, 'a> {
     }
 
     /// The number of values in the list that comes next.
-    pub fn list_length(&mut self, count: ComponentType) -> Result<u64, Fault> {
+    pub fn list_length(&mut self, count: Scalar) -> Result<u64, Fault> {
         let length = self.number(count)?;
         if length >= 0.0 { Ok(length as u64) } else { Err(Fault::NotANumber) }
     }
@@ -141,7 +199,7 @@ impl<'s, 'a> Body<'s, 'a> {
 
     /// The line, or the first byte, of the current element.
     pub fn place(&self) -> Place {
-        if self.is_text() { Place::Line(self.source.num_lines()) } else { Place::Byte(self.element_offset) }
+        if self.is_text() { Place::Line(self.first_line) } else { Place::Byte(self.element_offset) }
     }
 
     /// The error for `fault` in the element with the zero-based number `index`.

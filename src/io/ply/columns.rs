@@ -70,7 +70,7 @@ pub(super) fn attributes_of(
         rest = others;
         attributes.push(Attribute {
             is_normalized: scalar.is_integer() && matches!(semantic, Semantic::Color(_)),
-            ..Attribute::new(name, semantic, domain, num_components, Values::new(scalar))
+            ..Attribute::new(name, semantic, domain, num_components, Values::new(scalar.kept))
         });
     }
     (attributes, owners)

@@ -1,12 +1,10 @@
 //! The header: which elements there are, and what each is made of.
 
-use crate::{
-    io::{
-        Place, ReadError,
-        source::{Line, Source},
-        text::{quoted, words},
-    },
-    mesh::ComponentType,
+use super::scalar::Scalar;
+use crate::io::{
+    Place, ReadError,
+    source::{Line, Source},
+    text::{quoted, words},
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +17,8 @@ pub(super) enum Encoding {
 pub(super) struct Property {
     pub name: String,
     /// The type of the count before a list; `None` if this is a single value.
-    pub list_count: Option<ComponentType>,
-    pub scalar: ComponentType,
+    pub list_count: Option<Scalar>,
+    pub scalar: Scalar,
 }
 
 pub(super) struct Element {
@@ -34,6 +32,8 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
+    /// Comments that are no mere comments: names of textures.
+    pub textures: Vec<String>,
 }
 
 impl Header {
@@ -58,6 +58,7 @@ pub(super) fn read_header(source: &mut Source) -> Result<Header, ReadError> {
     }
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    let mut textures = Vec::new();
     while let Some(Line { number, text: line, is_cut }) = source.line() {
         if is_cut && line != b"end_header" {
             break;
@@ -66,6 +67,7 @@ pub(super) fn read_header(source: &mut Source) -> Result<Header, ReadError> {
         let bad = |cause: &str| ReadError::syntax(place, format!("{cause}: {}", quoted(line)));
         let words: Vec<&[u8]> = words(line).take(6).collect();
         match words[..] {
+            [b"comment", b"TextureFile", ..] => textures.push(texture(line)),
             [] | [b"comment" | b"obj_info", ..] => {}
             [b"format", name, version] => encoding = Some(parse_encoding(name, version, place)?),
             [b"element", name, count] => {
@@ -85,12 +87,19 @@ pub(super) fn read_header(source: &mut Source) -> Result<Header, ReadError> {
             [b"end_header"] => {
                 let encoding =
                     encoding.ok_or_else(|| ReadError::syntax(place, "the header names no format"))?;
-                return Ok(Header { encoding, elements });
+                return Ok(Header { encoding, elements, textures });
             }
             _ => return Err(bad("not a line of a PLY header")),
         }
     }
     Err(ReadError::syntax(Place::Line(source.num_lines()), "the file ends in the header"))
+}
+
+/// `comment TextureFile skin.png` without its first word, fit for a message.
+fn texture(line: &[u8]) -> String {
+    let line = line.trim_ascii_start();
+    let name = line.strip_prefix(b"comment").unwrap_or(line).trim_ascii_start();
+    format!("TextureFile {}", quoted(name.strip_prefix(b"TextureFile").unwrap_or(name)))
 }
 
 fn parse_encoding(name: &[u8], version: &[u8], place: Place) -> Result<Encoding, ReadError> {
@@ -108,7 +117,7 @@ fn parse_encoding(name: &[u8], version: &[u8], place: Place) -> Result<Encoding,
 
 fn parse_property(declaration: &[&[u8]]) -> Option<Property> {
     let (list_count, scalar, name) = match *declaration {
-        [b"list", count, scalar, name] => (Some(scalar_from_name(count)?), scalar, name),
+        [b"list", count, scalar, name] => (Some(Scalar::from_name(count)?), scalar, name),
         [scalar, name] => (None, scalar, name),
         _ => return None,
     };
@@ -116,21 +125,7 @@ fn parse_property(declaration: &[&[u8]]) -> Option<Property> {
         return None;
     }
     let name = clean_name(name);
-    Some(Property { name, list_count, scalar: scalar_from_name(scalar)? })
-}
-
-fn scalar_from_name(name: &[u8]) -> Option<ComponentType> {
-    Some(match name {
-        b"char" | b"int8" => ComponentType::I8,
-        b"uchar" | b"uint8" => ComponentType::U8,
-        b"short" | b"int16" => ComponentType::I16,
-        b"ushort" | b"uint16" => ComponentType::U16,
-        b"int" | b"int32" => ComponentType::I32,
-        b"uint" | b"uint32" => ComponentType::U32,
-        b"float" | b"float32" => ComponentType::F32,
-        b"double" | b"float64" => ComponentType::F64,
-        _ => return None,
-    })
+    Some(Property { name, list_count, scalar: Scalar::from_name(scalar)? })
 }
 
 /// Names end up in messages: nothing in them may reach for the terminal.

@@ -11,13 +11,14 @@
 mod body;
 mod columns;
 mod header;
+mod scalar;
 mod write;
 
 pub(super) use write::write;
 
 use super::{MeshFile, ReadError, builder::MeshBuilder, builder::fan, source::Source};
 use crate::mesh::{Attribute, Domain, NO_ENTRY, Semantic, Values};
-use body::{Body, Fault};
+use body::Body;
 use columns::attributes_of;
 use header::{Element, Property, read_header};
 
@@ -27,6 +28,7 @@ pub(super) fn read(source: &mut Source) -> Result<MeshFile, ReadError> {
     let mut body = Body::new(header.encoding, source);
     let num_vertices = header.num_vertices()?;
     let mut builder = MeshBuilder::default();
+    header.textures.iter().for_each(|name| builder.report.ignore(name));
     let mut is_first = true;
     for element in &header.elements {
         match element.name.as_str() {
@@ -42,6 +44,9 @@ pub(super) fn read(source: &mut Source) -> Result<MeshFile, ReadError> {
                 skip_element(&mut body, element)?;
             }
         }
+    }
+    if body.has_rounded {
+        builder.report.ignore("the last digits of integers beyond 53 bits");
     }
     builder.num_bytes = body.offset();
     builder.finish()
@@ -70,10 +75,11 @@ fn read_vertices(body: &mut Body, element: &Element, builder: &mut MeshBuilder) 
         for (k, property) in element.properties.iter().enumerate() {
             match (axes[k], owners[k]) {
                 (Some(axis), _) => position[axis] = body.number(property.scalar)?,
-                (_, Some(owner)) => attributes[owner].values.push_bits(body.bits(property.scalar)?),
+                (_, Some(owner)) => body.push(&mut attributes[owner].values, property.scalar)?,
                 _ => body.skip(property)?,
             }
         }
+        body.end_element()?;
         Ok(position)
     };
     reserve(&mut builder.positions, body.room_for(element.count, 3))?;
@@ -119,8 +125,9 @@ fn checked_index(
     element: &Element,
     index: u64,
 ) -> Result<u32, ReadError> {
-    if number >= 0.0 && number < f64::from(num_vertices) && number.fract() == 0.0 {
-        return Ok(number as u32);
+    let found = number as u32;
+    if f64::from(found) == number && found < num_vertices {
+        return Ok(found);
     }
     let Element { name, count, .. } = element;
     let message = format!(
@@ -148,7 +155,7 @@ fn read_faces(
     let mut faces = Faces {
         attributes,
         wedge: wedge_at.map(|k| {
-            let values = Values::new(element.properties[k].scalar);
+            let values = Values::new(element.properties[k].scalar.kept);
             Attribute::new("texcoord", Semantic::TexCoord(0), Domain::Corner, 2, values)
         }),
         rows: vec![NO_ENTRY; builder.triangles.len()],
@@ -162,7 +169,7 @@ fn read_faces(
             body.begin_element()?;
             for (k, property) in element.properties.iter().enumerate() {
                 match (property.list_count, owners[k]) {
-                    (_, Some(owner)) => attributes[owner].values.push_bits(body.bits(property.scalar)?),
+                    (_, Some(owner)) => body.push(&mut attributes[owner].values, property.scalar)?,
                     (Some(count), _) if k == corners_at => {
                         for _ in 0..body.list_length(count)? {
                             numbers.push(body.number(property.scalar)?);
@@ -176,7 +183,7 @@ fn read_faces(
                     _ => body.skip(property)?,
                 }
             }
-            Ok::<(), Fault>(())
+            body.end_element()
         };
     reserve(&mut builder.triangles, body.room_for(element.count, 4))?;
     let mut corners = Vec::new();
@@ -278,7 +285,7 @@ fn read_bare_faces(
                 _ => body.skip(property)?,
             }
         }
-        Ok(())
+        body.end_element()
     };
     let mut numbers = Vec::new();
     let mut corners = Vec::new();
@@ -303,9 +310,12 @@ fn skip_element(body: &mut Body, element: &Element) -> Result<(), ReadError> {
     // Without properties it has no bytes and no line, whatever its count.
     let count = if element.properties.is_empty() { 0 } else { element.count };
     for index in 0..count {
-        let skipped =
-            body.begin_element().and_then(|()| element.properties.iter().try_for_each(|p| body.skip(p)));
-        skipped.map_err(|fault| body.error(fault, element, index))?;
+        let mut skip = || {
+            body.begin_element()?;
+            element.properties.iter().try_for_each(|p| body.skip(p))?;
+            body.end_element()
+        };
+        skip().map_err(|fault| body.error(fault, element, index))?;
     }
     Ok(())
 }
