@@ -237,7 +237,7 @@ fn sparse_and_missing_buffers_are_zeros_with_exceptions() {
 }
 
 #[test]
-fn quantised_positions_and_strides_are_understood() {
+fn quantized_positions_and_strides_are_understood() {
     let mut model = Model::default();
     let view = model.view(&[0, 0, 0, 99, 255, 0, 0, 99, 0, 51, 0, 99]);
     model.views[view]["byteStride"] = 4.into();

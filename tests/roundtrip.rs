@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::exact::{assert_round_trip, quantise};
+use common::exact::{assert_round_trip, quantize};
 use common::kinds::every_kind;
 use common::*;
 use lwc::descriptors::Descriptor;
@@ -148,12 +148,12 @@ fn the_same_bytes_whatever_the_threads() {
 }
 
 #[test]
-fn the_quantiser_of_these_tests_rounds_halves_up() {
+fn the_quantizer_of_these_tests_rounds_halves_up() {
     let positions = vec![[0.0, 10.0, -1.0], [3.0, 10.5, -1.0], [1.5, 10.0, -1.0], [99.0; 3]];
     let mesh = build(positions, vec![[1, 2, 0], [1, 1, 0]]);
-    let quantised = quantise(&mesh, 2);
-    assert_eq!(quantised.triangles, [[[0, 0, 0], [3, 1, 0], [2, 0, 0]]]);
-    assert_eq!((quantised.used_vertices, quantised.degenerate_triangles), (3, 1));
+    let quantized = quantize(&mesh, 2);
+    assert_eq!(quantized.triangles, [[[0, 0, 0], [3, 1, 0], [2, 0, 0]]]);
+    assert_eq!((quantized.used_vertices, quantized.degenerate_triangles), (3, 1));
 }
 
 #[cfg(feature = "io")]

@@ -1,6 +1,6 @@
 //! The values of attributes after each pass.
 
-use super::attributes::Quantised;
+use super::attributes::Quantized;
 use super::coarsen::Hierarchy;
 use super::payload::padded;
 use crate::entropy::context_mixer::Mixing;
@@ -16,7 +16,7 @@ use crate::simplification::record::Removed;
 
 /// The decoder's layers, and what they should become.
 pub(super) struct AttributeWriter<'a> {
-    quantised: &'a Quantised,
+    quantized: &'a Quantized,
     layers: Vec<Layer>,
     /// Per attribute the entry of each element, in the decoder's numbering.
     truth: Vec<Vec<u32>>,
@@ -24,10 +24,10 @@ pub(super) struct AttributeWriter<'a> {
 }
 
 impl<'a> AttributeWriter<'a> {
-    pub(super) fn new(quantised: &'a Quantised, mixing: Mixing) -> Self {
+    pub(super) fn new(quantized: &'a Quantized, mixing: Mixing) -> Self {
         let layers =
-            quantised.list.iter().map(|attribute| Layer::new(&attribute.declaration, mixing)).collect();
-        Self { quantised, layers, truth: vec![Vec::new(); quantised.list.len()], payloads: Vec::new() }
+            quantized.list.iter().map(|attribute| Layer::new(&attribute.declaration, mixing)).collect();
+        Self { quantized, layers, truth: vec![Vec::new(); quantized.list.len()], payloads: Vec::new() }
     }
 
     /// The decoder's entries of each attribute.
@@ -49,7 +49,7 @@ impl<'a> AttributeWriter<'a> {
         face_source: &[u32],
     ) {
         let triangles = &mesh.surface.triangles;
-        for (attribute, truth) in self.quantised.list.iter().zip(&mut self.truth) {
+        for (attribute, truth) in self.quantized.list.iter().zip(&mut self.truth) {
             let Some(track) = attribute.track else { continue };
             let entries = hierarchy.seams.entries(track);
             if attribute.declaration.domain == Domain::Triangle {
@@ -71,7 +71,7 @@ impl<'a> AttributeWriter<'a> {
     /// Notes the entries at the star of a vertex that was brought back; `shift`: which of the removed faces is the first of
     /// the star.
     pub(super) fn restore(&mut self, star: &Star, record: &LevelRecord, removed: &Removed, shift: usize) {
-        for (attribute, truth) in self.quantised.list.iter().zip(&mut self.truth) {
+        for (attribute, truth) in self.quantized.list.iter().zip(&mut self.truth) {
             let Some(track) = attribute.track else { continue };
             let entries = record.entries(track);
             for (i, &face) in star.faces.iter().enumerate() {
@@ -108,7 +108,7 @@ impl<'a> AttributeWriter<'a> {
         let mut desk = Desk::default();
         let mut num_channels = 0;
         for ((attribute, layer), truth) in
-            self.quantised.list.iter().zip(&mut self.layers).zip(&mut self.truth)
+            self.quantized.list.iter().zip(&mut self.layers).zip(&mut self.truth)
         {
             if attribute.track.is_none() {
                 let missing = vertex_source[truth.len()..].iter();

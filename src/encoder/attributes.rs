@@ -15,8 +15,8 @@ use std::sync::Arc;
 
 /// All attributes of a surface as integers.
 #[derive(Default)]
-pub(super) struct Quantised {
-    pub(super) list: Vec<QuantisedAttribute>,
+pub(super) struct Quantized {
+    pub(super) list: Vec<QuantizedAttribute>,
     material_libraries: Arc<[String]>,
     /// Payloads of the scene and the materials.
     pub(super) scene: Option<Vec<u8>>,
@@ -26,7 +26,7 @@ pub(super) struct Quantised {
 }
 
 /// One attribute as integers.
-pub(super) struct QuantisedAttribute {
+pub(super) struct QuantizedAttribute {
     pub(super) declaration: Declaration,
     /// Different entries, channel by channel.
     pub(super) entries: Vec<i32>,
@@ -38,7 +38,7 @@ pub(super) struct QuantisedAttribute {
     pub(super) track: Option<usize>,
 }
 
-impl Quantised {
+impl Quantized {
     pub(super) fn is_empty(&self) -> bool {
         self.list.is_empty() && self.material_libraries.is_empty()
     }
@@ -80,33 +80,33 @@ impl Elements<'_> {
     }
 }
 
-/// Quantises the attributes of the surface, and of the loose elements that are kept.
+/// Quantizes the attributes of the surface, and of the loose elements that are kept.
 ///
 /// # Errors
 /// If one does not fit the mesh, or there are too many.
-pub(super) fn quantise(
+pub(super) fn quantize(
     Input { mesh, attributes, options }: Input,
     surface: Elements,
     loose: Elements,
-) -> Result<Quantised, EncodeError> {
-    let mut quantised =
-        Quantised { material_libraries: attributes.material_libraries.clone(), ..Quantised::default() };
+) -> Result<Quantized, EncodeError> {
+    let mut quantized =
+        Quantized { material_libraries: attributes.material_libraries.clone(), ..Quantized::default() };
     if let Some(table) = &attributes.scene {
         let payload = scene::write(table);
         let what = || "it breaks a rule of the format".to_owned();
         let fail = || EncodeError::Attribute { name: "scene".to_owned(), what: what() };
-        quantised.scene = Some(
+        quantized.scene = Some(
             Some(payload)
                 .filter(|payload| scene::read(payload, &mut Budget::new(0, u64::MAX)).is_some())
                 .ok_or_else(fail)?,
         );
     }
-    quantised.materials = attributes.gltf_materials.as_ref().map(scene::write_materials);
+    quantized.materials = attributes.gltf_materials.as_ref().map(scene::write_materials);
     let mut num_tracks = 0;
     for attribute in &attributes.list {
         let fail = |what: String| EncodeError::Attribute { name: attribute.name.clone(), what };
         attribute.validate(mesh).map_err(|e| fail(e.to_string()))?;
-        if quantised.list.len() == MAX_ATTRIBUTES {
+        if quantized.list.len() == MAX_ATTRIBUTES {
             return Err(fail(format!("a stream holds {MAX_ATTRIBUTES} attributes")));
         }
         let entry = |&element: &u32| attribute.entry(element as usize).map_or(NO_ENTRY, |entry| entry as u32);
@@ -117,7 +117,7 @@ pub(super) fn quantise(
         let is_dropped = |entry: u32| entry != NO_ENTRY && !is_finite(attribute, entry as usize);
         for entry in of.iter_mut().filter(|entry| is_dropped(**entry)) {
             *entry = NO_ENTRY;
-            quantised.values_dropped += usize::from(!options.lossless);
+            quantized.values_dropped += usize::from(!options.lossless);
         }
         let used = compact(&mut of, attribute.num_entries());
         let has_missing = of.contains(&NO_ENTRY);
@@ -137,13 +137,13 @@ pub(super) fn quantise(
         let track = (attribute.domain != Domain::Vertex).then_some(num_tracks);
         num_tracks += usize::from(track.is_some());
         let loose = loose.into_iter().zip(of.split_off(num_on_surface)).collect();
-        let mut one = QuantisedAttribute { declaration, entries, of, loose, track };
+        let mut one = QuantizedAttribute { declaration, entries, of, loose, track };
         if track.is_some() {
             one.merge_equal();
         }
-        quantised.list.push(one);
+        quantized.list.push(one);
     }
-    Ok(quantised)
+    Ok(quantized)
 }
 
 fn is_finite(attribute: &Attribute, entry: usize) -> bool {
@@ -208,7 +208,7 @@ fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOptions) -> Optio
     if is_fraction && low.iter().all(|&l| l >= 0.0) && high.iter().all(|&h| h <= 1.0) {
         return Some(Coding::Uniform { bits, minimum: vec![0.0; n], step: 1.0 / steps });
     }
-    // A range beyond double precision is quantised in halves.
+    // A range beyond double precision is quantized in halves.
     let step = if range.is_finite() { range / steps } else { f64::MAX / steps * 2.0 };
     let step = if step > 0.0 { step } else { 1.0 };
     Some(Coding::Uniform { bits, minimum: low.iter().map(|l| l + 0.0).collect(), step })
@@ -295,7 +295,7 @@ fn integers(attribute: &Attribute, used: &[u32], declaration: &Declaration) -> V
     }
 }
 
-impl QuantisedAttribute {
+impl QuantizedAttribute {
     /// Makes equal entries one, so that seams are where numbers differ.
     fn merge_equal(&mut self) {
         let n = self.declaration.num_channels();

@@ -1,7 +1,7 @@
 //! From payloads to a stream: headers, passes and what follows them, each framed as a chunk (`format/SPEC.md`,
 //! section 4).
 
-use super::attributes::Quantised;
+use super::attributes::Quantized;
 use super::options::EncodeOptions;
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::chunk_index::ChunkIndex;
@@ -39,28 +39,28 @@ pub(super) struct Payloads {
 }
 
 /// Materials, if they are small enough to come before the passes.
-fn materials_in_front(quantised: &Quantised) -> Option<&Vec<u8>> {
-    quantised.materials.as_ref().filter(|materials| materials.len() <= MOST_IN_FRONT)
+fn materials_in_front(quantized: &Quantized) -> Option<&Vec<u8>> {
+    quantized.materials.as_ref().filter(|materials| materials.len() <= MOST_IN_FRONT)
 }
 
 /// The chunk of materials, if they are too large to come before the passes.
-pub(super) fn trailing_materials(quantised: &Quantised) -> Option<(u8, Vec<u8>)> {
-    let is_large = materials_in_front(quantised).is_none();
-    quantised.materials.as_ref().filter(|_| is_large).map(|materials| (kind::MATERIALS, materials.clone()))
+pub(super) fn trailing_materials(quantized: &Quantized) -> Option<(u8, Vec<u8>)> {
+    let is_large = materials_in_front(quantized).is_none();
+    quantized.materials.as_ref().filter(|_| is_large).map(|materials| (kind::MATERIALS, materials.clone()))
 }
 
 /// The stream.
 pub(super) fn assemble(
     grid: &Grid,
     options: &EncodeOptions,
-    quantised: &Quantised,
+    quantized: &Quantized,
     payloads: &Payloads,
 ) -> Vec<u8> {
     let mut bytes = chunk::SIGNATURE.to_vec();
     bytes.push(chunk::VERSION);
     let has_levels = payloads.passes.len() > 1;
     write_header(&mut bytes, grid, options, has_levels);
-    write_attributes(&mut bytes, quantised, &payloads.values);
+    write_attributes(&mut bytes, quantized, &payloads.values);
     write_index(&mut bytes, payloads);
     write_table(&mut bytes, &payloads.passes);
     write_passes(&mut bytes, payloads);
@@ -85,14 +85,14 @@ fn write_header(bytes: &mut Vec<u8>, grid: &Grid, options: &EncodeOptions, has_l
 }
 
 /// What there is to know of attributes before their values.
-fn write_attributes(bytes: &mut Vec<u8>, quantised: &Quantised, values: &[Vec<u8>]) {
-    if !quantised.is_empty() {
-        chunk::write(bytes, kind::DECLARATIONS, &quantised.declare(values).write());
+fn write_attributes(bytes: &mut Vec<u8>, quantized: &Quantized, values: &[Vec<u8>]) {
+    if !quantized.is_empty() {
+        chunk::write(bytes, kind::DECLARATIONS, &quantized.declare(values).write());
     }
-    if let Some(scene) = &quantised.scene {
+    if let Some(scene) = &quantized.scene {
         chunk::write(bytes, kind::SCENE, scene);
     }
-    if let Some(materials) = materials_in_front(quantised) {
+    if let Some(materials) = materials_in_front(quantized) {
         chunk::write(bytes, kind::MATERIALS, materials);
     }
 }

@@ -1,11 +1,11 @@
 //! From a mesh to the surface that is encoded: usable triangles on the grid, in an order that does not depend on the
 //! file, cut where they are not manifold.
 
-use super::attributes::{self, Elements, Quantised};
+use super::attributes::{self, Elements, Quantized};
 use super::canonical_order::{self, Ordered};
 use super::isolated_and_degenerate::LooseElements;
 use super::options::Input;
-use super::quantise;
+use super::quantize;
 use super::tie_break::Signatures;
 use crate::bitstream::header::Grid;
 use crate::descriptors::{Features, FeaturesError};
@@ -56,16 +56,16 @@ impl GridSurface {
     ///
     /// # Errors
     /// If one does not fit the mesh or the descriptor, or there are too many.
-    pub(super) fn quantise_attributes(
+    pub(super) fn quantize_attributes(
         &self,
         input: Input,
-    ) -> Result<(Quantised, Option<Features>), EncodeError> {
+    ) -> Result<(Quantized, Option<Features>), EncodeError> {
         let vertices = &self.vertices()[..];
         let elements = Elements { vertices, corners: &self.ordered.corner_source };
-        let quantised = attributes::quantise(input, elements, self.loose.elements())?;
+        let quantized = attributes::quantize(input, elements, self.loose.elements())?;
         let features =
             features(input, vertices).map_err(|e| EncodeError::DescriptorAttributes(e.to_string()))?;
-        Ok((quantised, features))
+        Ok((quantized, features))
     }
 
     /// The vertices that are never removed, so that their stitching is there from the start and no level has a crack.
@@ -111,7 +111,7 @@ fn check_count(num_vertices: usize) -> Result<(), EncodeError> {
 fn grid_around(Input { mesh, options, .. }: Input, loose: &LooseElements) -> Result<Grid, EncodeError> {
     let usable = mesh.triangles().iter().filter(|t| has_three_vertices(t));
     let points = usable.flatten().chain(&loose.vertices).map(|&v| mesh.positions()[v as usize]);
-    quantise::grid_around(points, options.quantization_bits)
+    quantize::grid_around(points, options.quantization_bits)
 }
 
 /// Orders the usable triangles, their vertices and the loose elements. Signatures are made where places do not tell all

@@ -15,7 +15,7 @@ mod options;
 mod pass_writer;
 mod patch_search;
 mod payload;
-pub(crate) mod quantise;
+pub(crate) mod quantize;
 mod schedule;
 mod stitching;
 mod tie_break;
@@ -40,7 +40,7 @@ use crate::mesh::{Attributes, Surface, TriMesh};
 
 /// Encodes a mesh.
 ///
-/// The stream holds the mesh quantised to a grid; its finest level gives every cell and every
+/// The stream holds the mesh quantized to a grid; its finest level gives every cell and every
 /// oriented triangle back exactly. What was cut or dropped on the way is in the report.
 ///
 /// # Errors
@@ -62,7 +62,7 @@ pub fn encode_with_progress(
     encode_with_attributes(mesh, &Attributes::default(), options, progress)
 }
 
-/// Encodes a mesh with its attributes, each quantised to the bits that [`EncodeOptions`] has for its kind; see
+/// Encodes a mesh with its attributes, each quantized to the bits that [`EncodeOptions`] has for its kind; see
 /// [`encode`]. Vertices that are repeated to cut the mesh have the values of the one they repeat.
 ///
 /// # Errors
@@ -77,12 +77,12 @@ pub fn encode_with_attributes(
     environment::check().map_err(EncodeError::FloatingPoint)?;
     let input = Input { mesh, attributes, options };
     let (surface, on_grid) = GridSurface::of(input)?;
-    let (quantised, features) = on_grid.quantise_attributes(input)?;
-    let original = Original { input, on_grid: &on_grid, quantised: &quantised };
+    let (quantized, features) = on_grid.quantize_attributes(input)?;
+    let original = Original { input, on_grid: &on_grid, quantized: &quantized };
     let bytes = smallest_stream(surface, original, features.as_ref(), progress);
     // The encoder's own bytes always hold a header.
     let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(mesh.num_vertices()))?;
-    Ok(Encoded { bytes, info, repair: on_grid.repair, values_dropped: quantised.values_dropped })
+    Ok(Encoded { bytes, info, repair: on_grid.repair, values_dropped: quantized.values_dropped })
 }
 
 /// The smallest stream of all hierarchies and schedules that the options try.
@@ -92,7 +92,7 @@ fn smallest_stream(
     features: Option<&Features>,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Vec<u8> {
-    let Original { input: Input { options, .. }, on_grid, quantised } = original;
+    let Original { input: Input { options, .. }, on_grid, quantized } = original;
     let points = compensation::points(&surface, &on_grid.cells);
     let stitched = on_grid.stitched();
     let attempts = options.hierarchies_tried();
@@ -103,7 +103,7 @@ fn smallest_stream(
     for (i, &attempt) in attempts.iter().enumerate() {
         let is_last = i + 1 == attempts.len();
         let taken = if is_last { surface.take() } else { surface.clone() }.unwrap_or_default();
-        let (stitched, seams, features) = (stitched.clone(), quantised.seams(), features.cloned());
+        let (stitched, seams, features) = (stitched.clone(), quantized.seams(), features.cloned());
         let companions = Companions { stitched, seams, features };
         let hierarchy = coarsen::analyse(taken, &on_grid.cells, companions, options, attempt, &|now| {
             tries.tell(i, 0, now)

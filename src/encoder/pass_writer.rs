@@ -50,7 +50,7 @@ impl<'a> PassWriter<'a> {
         hierarchy: &Hierarchy,
         quantization_bits: u32,
     ) -> (Self, Numbering) {
-        let Original { input, on_grid, quantised } = *original;
+        let Original { input, on_grid, quantized } = *original;
         let (profile, cells) = (input.options.profile_used(), &on_grid.cells[..]);
         let (mixing, full_bits) = (profile.mixing(), on_grid.grid.quantization_bits);
         let (coded, payload) = code_base(hierarchy, cells, [full_bits, quantization_bits], mixing);
@@ -64,7 +64,7 @@ impl<'a> PassWriter<'a> {
             mesh: coded.mesh,
             coordinates: CoordinateModels::new(mixing),
             refine: RefineModels::new(mixing),
-            attributes: AttributeWriter::new(quantised, mixing),
+            attributes: AttributeWriter::new(quantized, mixing),
             stitching: StitchingWriter::new(&on_grid.source, on_grid.ordered.cells.len()),
             fitter: Fitter::new(points, &hierarchy.records, cells),
             passes: Vec::new(),
@@ -212,7 +212,7 @@ impl<'a> PassWriter<'a> {
         let surface =
             Written { mesh: &self.mesh, vertex_source, face_source, entries: self.attributes.entries() };
         let mut trailing = original.trailing(&surface, self.stitching.into_roots());
-        trailing.extend(frame::trailing_materials(original.quantised));
+        trailing.extend(frame::trailing_materials(original.quantized));
         Payloads { passes: self.passes, values: self.attributes.into_payloads(), trailing }
     }
 }

@@ -1,7 +1,7 @@
 //! What distinguishes vertices and triangles at the same position: the values of their attributes, as a
 //! decoder will have them.
 
-use super::attributes::{Elements, quantise};
+use super::attributes::{Elements, quantize};
 use super::options::Input;
 use crate::mesh::surface::turns;
 use crate::mesh::{Attribute, Domain, NO_ENTRY, Values};
@@ -39,8 +39,8 @@ impl Signatures {
             return Some(all);
         }
         // Attributes that do not fit are an error later.
-        let quantised = quantise(input, surface, loose).ok()?;
-        for (one, attribute) in quantised.list.iter().zip(&attributes.list) {
+        let quantized = quantize(input, surface, loose).ok()?;
+        for (one, attribute) in quantized.list.iter().zip(&attributes.list) {
             let n = one.declaration.num_channels();
             let hash = |entry: u32| {
                 let channels = (entry != NO_ENTRY).then(|| &one.entries[entry as usize * n..][..n])?;

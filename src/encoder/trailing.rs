@@ -1,6 +1,6 @@
 //! What follows the last pass: everything about the mesh that the surface on the grid does not contain.
 
-use super::attributes::{self, Quantised};
+use super::attributes::{self, Quantized};
 use super::grid_surface::GridSurface;
 use super::number_format::cheapest_scale;
 use super::options::{EncodeOptions, Input};
@@ -23,7 +23,7 @@ use crate::passes::{GridMesh, exact};
 pub(super) struct Original<'a> {
     pub(super) input: Input<'a>,
     pub(super) on_grid: &'a GridSurface,
-    pub(super) quantised: &'a Quantised,
+    pub(super) quantized: &'a Quantized,
 }
 
 /// The surface as a decoder has it.
@@ -82,7 +82,7 @@ impl Original<'_> {
     fn says_nothing(&self) -> bool {
         let has_loose = self.on_grid.loose.len() > 0;
         let EncodeOptions { lossless, keep_order, .. } = *self.input.options;
-        !(has_loose || lossless || keep_order || !self.quantised.list.is_empty())
+        !(has_loose || lossless || keep_order || !self.quantized.list.is_empty())
     }
 
     /// Vertex of the mesh for each vertex of the joined surface, then for each one that is loose.
@@ -146,7 +146,7 @@ impl Original<'_> {
         joined: &Joined,
         of_mesh: attributes::Elements,
     ) -> Option<Vec<u8>> {
-        let (list, triangles) = (&self.quantised.list, &surface.mesh.surface.triangles);
+        let (list, triangles) = (&self.quantized.list, &surface.mesh.surface.triangles);
         if list.is_empty() {
             return None;
         }
@@ -155,7 +155,7 @@ impl Original<'_> {
             domains.zip(&surface.entries).map(|(d, entries)| extras.elements(joined, triangles, entries, d));
         let elements: Vec<Elements> = elements.collect();
         let Input { attributes, options, .. } = self.input;
-        let values = ExactValues { attributes, quantised: self.quantised, is_lossless: options.lossless };
+        let values = ExactValues { attributes, quantized: self.quantized, is_lossless: options.lossless };
         values.payload(&elements, of_mesh)
     }
 

@@ -1,6 +1,6 @@
 //! Values of attributes bit for bit, and those of isolated vertices and degenerate faces.
 
-use super::attributes::{Quantised, QuantisedAttribute};
+use super::attributes::{Quantized, QuantizedAttribute};
 use super::number_format::cheapest_scale;
 use super::payload::expect_sound;
 use crate::entropy::range_coder::RangeEncoder;
@@ -14,7 +14,7 @@ use bitvec::vec::BitVec;
 #[derive(Clone, Copy)]
 pub(super) struct ExactValues<'a> {
     pub(super) attributes: &'a Attributes,
-    pub(super) quantised: &'a Quantised,
+    pub(super) quantized: &'a Quantized,
     pub(super) is_lossless: bool,
 }
 
@@ -26,11 +26,11 @@ impl ExactValues<'_> {
         elements: &[Elements],
         sources: super::attributes::Elements,
     ) -> Option<Vec<u8>> {
-        let list = self.attributes.list.iter().zip(&self.quantised.list).zip(elements);
+        let list = self.attributes.list.iter().zip(&self.quantized.list).zip(elements);
         let parts: Vec<Part> = list
-            .map(|((attribute, quantised), elements)| {
-                let of = sources.of(quantised.declaration.domain);
-                let mut part = Part { attribute, quantised, elements, of, scales: None };
+            .map(|((attribute, quantized), elements)| {
+                let of = sources.of(quantized.declaration.domain);
+                let mut part = Part { attribute, quantized, elements, of, scales: None };
                 part.scales = self.is_lossless.then(|| part.scales()).flatten();
                 part
             })
@@ -39,7 +39,7 @@ impl ExactValues<'_> {
             return None;
         }
         let declarations: Vec<Declaration> =
-            self.quantised.list.iter().map(|one| one.declaration.clone()).collect();
+            self.quantized.list.iter().map(|one| one.declaration.clone()).collect();
         let scales: Vec<_> = parts.iter().map(|part| part.scales.clone()).collect();
         let mut coder = RangeEncoder::new();
         parts.iter().for_each(|part| part.write(&mut coder));
@@ -52,7 +52,7 @@ impl ExactValues<'_> {
 /// One attribute.
 struct Part<'a> {
     attribute: &'a Attribute,
-    quantised: &'a QuantisedAttribute,
+    quantized: &'a QuantizedAttribute,
     elements: &'a Elements<'a>,
     /// The element of the mesh that each is.
     of: Vec<u32>,
@@ -61,8 +61,8 @@ struct Part<'a> {
 
 impl<'a> Part<'a> {
     fn channels(&self, entry: u32) -> Option<&'a [i32]> {
-        let n = self.quantised.declaration.num_channels();
-        (entry != NO_ENTRY).then(|| &self.quantised.entries[entry as usize * n..][..n])
+        let n = self.quantized.declaration.num_channels();
+        (entry != NO_ENTRY).then(|| &self.quantized.entries[entry as usize * n..][..n])
     }
 
     /// Channels that a decoder has for an element.
@@ -84,7 +84,7 @@ impl<'a> Part<'a> {
 
     fn loose(&self, i: usize) -> Option<&'a [i32]> {
         let element = self.of[self.elements.on_surface.len() + i];
-        self.channels(self.quantised.loose.get(&element).copied().unwrap_or(NO_ENTRY))
+        self.channels(self.quantized.loose.get(&element).copied().unwrap_or(NO_ENTRY))
     }
 
     fn entry(&self, element: usize) -> Option<usize> {
@@ -93,7 +93,7 @@ impl<'a> Part<'a> {
 
     /// The kinds of the components' numbers; `None` if the channels of all entries tell their bits.
     fn scales(&self) -> Option<Vec<Scale>> {
-        let declaration = &self.quantised.declaration;
+        let declaration = &self.quantized.declaration;
         let scalar = values::scalar_of_inexact(declaration)?;
         let n = declaration.num_components;
         let mut is_seen: BitVec = BitVec::repeat(false, self.attribute.num_entries());
@@ -124,7 +124,7 @@ impl<'a> Part<'a> {
     }
 
     fn write(&self, coder: &mut RangeEncoder) {
-        let declaration = &self.quantised.declaration;
+        let declaration = &self.quantized.declaration;
         let wide = values::scalar_of_inexact(declaration).is_some_and(values::is_wide);
         let ladder = |scale: &Scale| Ladder::new(wide, *scale);
         let ladders: Ladders = self.scales.as_ref().map(|scales| scales.iter().map(ladder).collect());

@@ -42,10 +42,10 @@ pub(super) fn write(
         }
     }
     let mut payloads = writer.finish(original, &numbering);
-    let declared = original.quantised.declare(&payloads.values);
+    let declared = original.quantized.declare(&payloads.values);
     let loose = original.on_grid.loose.len() as u64;
     earnings::pad(&mut payloads.passes, &payloads.values, &declared, &payloads.trailing, loose);
-    frame::assemble(&original.on_grid.grid, original.input.options, original.quantised, &payloads)
+    frame::assemble(&original.on_grid.grid, original.input.options, original.quantized, &payloads)
 }
 
 /// Codes each split and the refinements after it in streams.

@@ -22,7 +22,7 @@ mod noise;
 pub use noise::Noise;
 
 use crate::descriptors::{self, Descriptor, Readings, Window};
-use crate::encoder::quantise::{LEGALITY_BITS, quantise};
+use crate::encoder::quantize::{LEGALITY_BITS, quantize};
 use crate::error::EncodeError;
 use crate::mesh::repair::{RepairReport, Repaired, repair};
 use crate::mesh::{Surface, TriMesh};
@@ -123,7 +123,7 @@ impl Experiment {
         if surface.triangles.is_empty() {
             return Err(EncodeError::NoTriangles);
         }
-        let model = quantise(mesh, &source, LEGALITY_BITS)?;
+        let model = quantize(mesh, &source, LEGALITY_BITS)?;
         let mean_edge = descriptors::mean_edge_length(mesh);
         let mut experiment = Self {
             surface,
@@ -136,7 +136,7 @@ impl Experiment {
         };
         if let Some(noise) = noise {
             let noisy = noise.perturb(mesh, mean_edge)?;
-            let model = quantise(&noisy, &source, LEGALITY_BITS)?;
+            let model = quantize(&noisy, &source, LEGALITY_BITS)?;
             experiment.cells = model.cells;
             let same_unit = experiment.unit / model.unit;
             experiment.driving = model.positions;

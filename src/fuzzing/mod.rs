@@ -205,7 +205,7 @@ pub fn round_trip(data: &[u8]) {
         used.sort_unstable();
         used.dedup();
         assert_eq!((whole.num_vertices(), whole.num_triangles()), (used.len(), usable().count()));
-        assert_eq!(cells_of(decoded), quantised(&mesh, options.quantization_bits, encoded.info.side()));
+        assert_eq!(cells_of(decoded), quantized(&mesh, options.quantization_bits, encoded.info.side()));
     }
     let wanted = values_of(&mesh, &attributes);
     if options.lossless {
@@ -609,7 +609,7 @@ fn cells_of(mesh: LevelMesh) -> Vec<CellTriangle> {
 }
 
 /// The usable triangles of `mesh` on the grid that the vertices they use span.
-fn quantised(mesh: &TriMesh, quantization_bits: u32, side: f64) -> Vec<CellTriangle> {
+fn quantized(mesh: &TriMesh, quantization_bits: u32, side: f64) -> Vec<CellTriangle> {
     let usable = || mesh.triangles().iter().filter(|t| has_three_vertices(t));
     let at = |v: u32| mesh.positions()[v as usize];
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

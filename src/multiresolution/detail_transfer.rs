@@ -5,7 +5,7 @@ use super::edit_error::EditError;
 use super::hierarchy::{Hierarchy, StreamHierarchy};
 use super::lift::vertex_normals;
 use super::options::Prediction;
-use crate::encoder::quantise::unit_near;
+use crate::encoder::quantize::unit_near;
 use crate::limits::Limits;
 use crate::mesh::{TriMesh, has_three_vertices};
 use glam::DVec3;

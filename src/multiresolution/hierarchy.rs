@@ -4,7 +4,7 @@ use super::edit_error::EditError;
 use super::options::Options;
 use crate::decoder::{Decoder, PassKind};
 use crate::descriptors;
-use crate::encoder::quantise::{LEGALITY_BITS, quantise};
+use crate::encoder::quantize::{LEGALITY_BITS, quantize};
 use crate::error::EncodeError;
 use crate::limits::Limits;
 use crate::mesh::repair::{Repaired, repair};
@@ -63,7 +63,7 @@ impl Hierarchy {
         if surface.triangles.is_empty() {
             return Err(EncodeError::NoTriangles);
         }
-        let model = quantise(mesh, &source, LEGALITY_BITS)?;
+        let model = quantize(mesh, &source, LEGALITY_BITS)?;
         let mean_edge = descriptors::mean_edge_length(mesh) * model.unit;
         let geometry = Geometry { grid: &model.cells, positions: &model.positions };
         let num_vertices = surface.corner_of.len();

@@ -10,7 +10,7 @@ use lwc::{
 pub type CellTriangle = [[i64; 3]; 3];
 
 /// The usable part of a mesh on a grid.
-pub struct Quantised {
+pub struct Quantized {
     /// Oriented triangles, each from its smallest corner on, sorted.
     pub triangles: Vec<CellTriangle>,
     /// Vertices that they use.
@@ -21,13 +21,13 @@ pub struct Quantised {
 
 /// g = floor((x − min)·(2^q − 1)/s + ½), min per axis and s the largest side, both over the vertices
 /// that usable triangles use.
-pub fn quantise(mesh: &TriMesh, quantization_bits: u32) -> Quantised {
-    quantise_on(mesh, quantization_bits, None)
+pub fn quantize(mesh: &TriMesh, quantization_bits: u32) -> Quantized {
+    quantize_on(mesh, quantization_bits, None)
 }
 
 /// The same with the side of a stream, which may differ from the largest one by roundings of numbers as large
 /// as the coordinates.
-pub fn quantise_on(mesh: &TriMesh, quantization_bits: u32, side_of_stream: Option<f64>) -> Quantised {
+pub fn quantize_on(mesh: &TriMesh, quantization_bits: u32, side_of_stream: Option<f64>) -> Quantized {
     let usable: Vec<[u32; 3]> =
         mesh.triangles().iter().copied().filter(|&[a, b, c]| a != b && b != c && c != a).collect();
     let mut used: Vec<u32> = usable.iter().flatten().copied().collect();
@@ -62,7 +62,7 @@ pub fn quantise_on(mesh: &TriMesh, quantization_bits: u32, side_of_stream: Optio
             _ => ((at(v)[axis] - low[axis]) * steps / side + 0.5).floor() as i64,
         })
     };
-    Quantised {
+    Quantized {
         triangles: canonical(usable.iter().map(|t| t.map(cell))),
         used_vertices: used.len(),
         degenerate_triangles: mesh.num_triangles() - usable.len(),
@@ -110,7 +110,7 @@ pub fn assert_exact(
     }
     assert!(decoder.is_complete(), "{what}: passes are missing");
     let decoded = decoder.mesh().expect("a complete stream has a mesh");
-    let wanted = quantise_on(mesh, quantization_bits, decoder.info().map(|info| info.side()));
+    let wanted = quantize_on(mesh, quantization_bits, decoder.info().map(|info| info.side()));
     assert_eq!(decoded.quantization_bits(), quantization_bits, "{what}");
     assert_eq!(report.degenerate_triangles, wanted.degenerate_triangles, "{what}");
     assert_eq!(report.isolated_vertices, mesh.num_vertices() - wanted.used_vertices, "{what}");

@@ -31,7 +31,7 @@ pub fn verify(
     let (mesh, attributes) = (&file.mesh, &file.attributes);
     let check = || {
         let decoder = decode(encoded, part.between(0.0, 0.5))?;
-        let expected = Quantised::new(mesh, options, encoded.info.side());
+        let expected = Quantized::new(mesh, options, encoded.info.side());
         compare_surface(&expected, options.quantization_bits, encoded, &decoder)?;
         part.set(0.7);
         let (decoded, found) = decoder.to_tri_mesh_with_attributes().ok_or("there is no mesh")?;
@@ -83,7 +83,7 @@ fn decode(encoded: &Encoded, part: Part) -> Result<Decoder, String> {
 }
 
 fn compare_surface(
-    expected: &Quantised,
+    expected: &Quantized,
     quantization_bits: u32,
     encoded: &Encoded,
     decoder: &Decoder,
@@ -118,7 +118,7 @@ fn compare_surface(
 fn compare_whole(
     mesh: &TriMesh,
     decoded: &TriMesh,
-    grid: &Quantised,
+    grid: &Quantized,
     options: &EncodeOptions,
 ) -> Result<(), String> {
     let sizes = |mesh: &TriMesh| (mesh.num_vertices(), mesh.num_triangles());
@@ -184,7 +184,7 @@ fn stars(mesh: &TriMesh, places: &[[u64; 3]]) -> Vec<u64> {
 type Cell = [i32; 3];
 
 /// A mesh on the grid.
-struct Quantised {
+struct Quantized {
     origin: [f64; 3],
     side: f64,
     steps: f64,
@@ -194,7 +194,7 @@ struct Quantised {
     triangles: Vec<[Cell; 3]>,
 }
 
-impl Quantised {
+impl Quantized {
     /// g = floor((x − min)·(2^q − 1)/s + ½) per axis: min per axis and s the longest side, both over the
     /// vertices of the triangles with three different vertices and what else is kept. `side` is s as the stream has
     /// it, if it differs by the rounding of coordinates only.
@@ -213,16 +213,16 @@ impl Quantised {
         let longest = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
         let magnitude = low.iter().chain(&high).fold(longest, |m, x| m.max(x.abs()));
         let is_close = (side - longest).abs() <= 8.0 * f64::EPSILON * magnitude;
-        let mut quantised = Self {
+        let mut quantized = Self {
             origin: low,
             side: if is_close { side } else { longest },
             steps: ((1_u64 << options.quantization_bits) - 1) as f64,
             num_vertices: is_used.iter().filter(|&&used| used).count(),
             triangles: Vec::new(),
         };
-        let cell = |vertex: u32| quantised.cell(mesh.positions()[vertex as usize]);
-        quantised.triangles = sorted(usable().map(|t| t.map(cell)));
-        quantised
+        let cell = |vertex: u32| quantized.cell(mesh.positions()[vertex as usize]);
+        quantized.triangles = sorted(usable().map(|t| t.map(cell)));
+        quantized
     }
 
     fn cell(&self, position: [f64; 3]) -> Cell {

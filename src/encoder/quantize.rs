@@ -18,8 +18,8 @@ pub(crate) struct Model {
     pub(crate) unit: f64,
 }
 
-/// Quantises the vertices `source` of `mesh`; there is at least one.
-pub(crate) fn quantise(mesh: &TriMesh, source: &[u32], quantization_bits: u32) -> Result<Model, EncodeError> {
+/// Quantizes the vertices `source` of `mesh`; there is at least one.
+pub(crate) fn quantize(mesh: &TriMesh, source: &[u32], quantization_bits: u32) -> Result<Model, EncodeError> {
     let at = |v: u32| mesh.positions()[v as usize];
     let grid = grid_around(source.iter().map(|&v| at(v)), quantization_bits)?;
     let unit = unit_near(grid.side);
@@ -82,7 +82,7 @@ mod tests {
     fn halves_go_up_and_ends_meet_the_grid() {
         let positions = vec![[0.0, 10.0, -1.0], [3.0, 10.5, -1.0], [1.5, 10.0, -1.0], [99.0; 3]];
         let mesh = TriMesh::new(positions, vec![[0, 1, 2]]).unwrap();
-        let model = quantise(&mesh, &[0, 1, 2], 2).unwrap();
+        let model = quantize(&mesh, &[0, 1, 2], 2).unwrap();
         assert_eq!(model.cells, [[0, 0, 0], [3, 1, 0], [2, 0, 0]]);
         let grid = grid_around(mesh.positions()[..3].iter().copied(), 2).unwrap();
         assert_eq!((grid.side, grid.origin), (3.0, [0.0, 10.0, -1.0]));
@@ -113,11 +113,11 @@ mod tests {
         for size in [0.0, 1e-320, 1e-42, 1.0, 1e200, 8e307] {
             let mesh =
                 TriMesh::new(vec![[0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0]], vec![[0, 1, 2]]).unwrap();
-            let model = quantise(&mesh, &[0, 1, 2], 30).unwrap();
+            let model = quantize(&mesh, &[0, 1, 2], 30).unwrap();
             let top = if size > 0.0 { (1 << 30) - 1 } else { 0 };
             assert_eq!(model.cells, [[0, 0, 0], [top, 0, 0], [0, top, 0]], "{size}");
         }
         let mesh = TriMesh::new(vec![[-1e308; 3], [1e308; 3], [0.0; 3]], vec![[0, 1, 2]]).unwrap();
-        assert!(matches!(quantise(&mesh, &[0, 1, 2], 12), Err(EncodeError::BoundingBox)));
+        assert!(matches!(quantize(&mesh, &[0, 1, 2], 12), Err(EncodeError::BoundingBox)));
     }
 }
