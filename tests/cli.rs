@@ -41,6 +41,19 @@ fn options_in(text: &str) -> BTreeSet<&str> {
     words.filter(|word| word.starts_with("--")).map(|word| word.trim_end_matches('-')).collect()
 }
 
+#[test]
+fn help_has_a_command_too() {
+    let workshop = Workshop::new();
+    assert_eq!(workshop.ok("help decode"), workshop.ok("decode --help"));
+}
+
+#[test]
+fn a_dash_is_no_file() {
+    let workshop = Workshop::new();
+    let error = workshop.fails("encode -", 3);
+    assert!(error.contains("a mesh is not read from standard input"), "{error}");
+}
+
 /// The names of all commands.
 fn commands(workshop: &Workshop) -> Vec<String> {
     let (help, _) = workshop.ok("--help");
@@ -48,7 +61,8 @@ fn commands(workshop: &Workshop) -> Vec<String> {
     let names = lines.take_while(|line| !line.is_empty()).filter_map(|line| line.strip_prefix("  "));
     // The lines of long descriptions go on further to the right.
     let names = names.filter(|line| !line.starts_with(' ')).filter_map(|line| line.split(' ').next());
-    names.map(str::to_owned).collect()
+    // Help on help is nobody's wish.
+    names.filter(|name| *name != "help").map(str::to_owned).collect()
 }
 
 #[test]

@@ -25,7 +25,9 @@ impl Bar {
     /// Visible if `is_shown`; `screen` is where else something may be written.
     pub fn new(screen: &Screen, is_shown: bool) -> Self {
         let target = if is_shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let drawn = ProgressBar::with_draw_target(Some(FULL as u64), target).with_style(style());
+        let drawn = ProgressBar::with_draw_target(Some(FULL as u64), target)
+            .with_style(style())
+            .with_message("starting");
         if is_shown {
             drawn.enable_steady_tick(TICK);
             screen.show(&drawn);

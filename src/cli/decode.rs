@@ -5,7 +5,7 @@ use super::exit::Failure;
 use super::new_shape;
 use super::output::{Destination, say_written, size_of, with_ending};
 use super::quantity;
-use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, reached};
+use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, note_if_no_level, reached};
 use super::ui::Ui;
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -140,12 +140,9 @@ fn sound_mesh(
 
 fn note_what_is_missing(decoder: &Decoder, args: &Decode, name: &str, ui: &Ui) {
     let (Some(level), Some(info)) = (args.level, decoder.info()) else { return };
-    let finest = info.finest_level();
-    if level > finest {
-        ui.note(name, &format!("there is no level {level}, the finest is {finest}"));
-    }
+    note_if_no_level(info, level, name, ui);
     let only_finest: Vec<&str> = info.trailing().iter().map(|trailing| trailing.kind.name()).collect();
-    if level < finest && !only_finest.is_empty() {
+    if level < info.finest_level() && !only_finest.is_empty() {
         ui.note(name, &format!("only the whole stream has: {}", only_finest.join(", ")));
     }
 }

@@ -18,7 +18,13 @@ pub fn check(path: &Path) -> Result<(), Failure> {
         Ok(found) if found.is_dir() => refuse(io::ErrorKind::IsADirectory, "it is a folder"),
         Ok(_) => Ok(()),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            refuse(error.kind(), "there is no such file")
+            let is_stdin = path == Path::new("-");
+            let what = if is_stdin {
+                "a mesh is not read from standard input: give a file"
+            } else {
+                "there is no such file"
+            };
+            refuse(error.kind(), what)
         }
         Err(error) => Err(Failure::Input(error)),
     }

@@ -36,7 +36,9 @@ pub fn run(args: &Man, mut program: Command, ui: &Ui) -> anyhow::Result<()> {
     }
     fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let mut num_pages = 0;
-    for command in std::iter::once(&program).chain(program.get_subcommands()) {
+    for command in
+        std::iter::once(&program).chain(program.get_subcommands().filter(|c| c.get_name() != "help"))
+    {
         let path = folder.join(Page::new(command.clone()).get_filename());
         Destination::File(path).write(|out| write_page(out, command))?;
         num_pages += 1;

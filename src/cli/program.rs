@@ -6,7 +6,6 @@ use clap::{Parser, Subcommand};
 /// Progressive codec for triangle meshes: one small file that can be cut anywhere.
 #[derive(Debug, Parser)]
 #[command(name = "lwc", version, after_help = super::exit::HELP)]
-#[command(disable_help_subcommand = true)]
 pub struct Args {
     #[command(flatten)]
     pub global: Global,

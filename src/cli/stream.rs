@@ -6,7 +6,7 @@ use super::exit::Failure;
 use super::input_file;
 use super::ui::Ui;
 use anyhow::Context;
-use lwc::{DecodeError, DecodeOptions, Decoder, PassInfo};
+use lwc::{DecodeError, DecodeOptions, Decoder, PassInfo, StreamInfo};
 use std::fs::File;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
@@ -135,6 +135,14 @@ const PIECE_BYTES: usize = 1 << 16;
 pub struct DecodedStream {
     pub decoder: Decoder,
     pub error: Option<DecodeError>,
+}
+
+/// Says that a level is not in a stream, and which one is shown in its place.
+pub fn note_if_no_level(info: &StreamInfo, level: u32, name: &str, ui: &Ui) {
+    let finest = info.finest_level();
+    if level > finest {
+        ui.note(name, &format!("there is no level {level}, the finest is {finest}"));
+    }
 }
 
 /// Says how far the mesh at hand is from what was asked for; `most_bytes` as in [`StreamSource::decode`].

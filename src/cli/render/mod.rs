@@ -8,7 +8,7 @@ use super::exit::Failure;
 use super::input::{in_place, read_mesh};
 use super::input_file::is_stream;
 use super::output::{Destination, has_ending, pixels_of, say_written};
-use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete};
+use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, note_if_no_level};
 use super::ui::Ui;
 use anyhow::Context;
 use args::{AttributeKind, ColorBy, HeatArgs, Picture, Render};
@@ -91,6 +91,9 @@ fn read(args: &Render, part: Part, ui: &Ui) -> anyhow::Result<MeshFile> {
         return Err(error).with_context(|| source.name());
     }
     note_if_incomplete(&decoder, args.bytes, &source.name(), ui);
+    if let (Some(info), Some(level)) = (decoder.info(), args.level) {
+        note_if_no_level(info, level, &source.name(), ui);
+    }
     let decoded = decoder.preview_with_attributes().ok_or(DecodeError::NoMesh);
     let (mesh, attributes) = decoded.with_context(|| source.name())?;
     in_place(mesh, attributes).with_context(|| source.name())

@@ -108,6 +108,6 @@ class Scene:
     meshes: list[Mesh]
     instances: list[Instance]
     """A mesh may be in several places, or nowhere."""
-    materials: str | None = None
+    materials: str | None = field(default=None, repr=False)
     """How materials look: JSON with the lists of glTF 2.0, ``bufferView`` of an image counting ``images``."""
-    images: list[bytes] = field(default_factory=list)
+    images: list[bytes] = field(default_factory=list, repr=False)
