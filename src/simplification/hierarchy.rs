@@ -2,7 +2,7 @@
 
 use super::canonical::Anchors;
 use super::level::Level;
-use super::partition::{Geometry, Partition, Ranked, is_coarse, remove_level};
+use super::partition::{Geometry, Partition, Ranked, Remover, is_coarse};
 use super::quadrics::ErrorMemory;
 use super::vertex_selection::{Optimize, Saliency, Thinning};
 use super::{LevelRecord, Rings, Seams, SurfaceEditor};
@@ -206,17 +206,14 @@ impl Iterator for Descent<'_> {
         }
         let optimize = self.settings.optimize;
         let ranked = self.ranked();
-        let record = remove_level(
-            self.settings.optimize,
-            self.settings.max_valence,
-            &mut self.shrinking,
-            self.geometry,
-            &mut self.memory,
-            &self.anchors,
-            &mut self.seams,
-            &self.level,
-            ranked,
-        );
+        let mut remover = Remover {
+            surface: &mut self.shrinking,
+            geometry: self.geometry,
+            memory: &mut self.memory,
+            anchors: &self.anchors,
+            seams: &mut self.seams,
+        };
+        let record = remover.remove(&self.level, ranked, optimize, self.settings.max_valence);
         if record.len() == 0 {
             let num_vertices = self.level.vertices.len();
             let may_loosen = self.seams.hold() && !is_coarse(optimize, num_vertices, &self.shrinking);

@@ -50,52 +50,102 @@ pub(crate) struct Geometry<'a> {
     pub(crate) positions: &'a [[f64; 3]],
 }
 
-/// Removes one level of odd vertices. `level` is what there is; `ranked` is what says in which order or
-/// which of them go.
-#[expect(clippy::too_many_arguments, reason = "what a level is, and what is kept from one to the next")]
-pub(crate) fn remove_level(
-    optimize: Optimize,
-    max_valence: Option<u32>,
-    surface: &mut SurfaceEditor,
-    geometry: Geometry,
-    memory: &mut ErrorMemory,
-    anchors: &Anchors,
-    seams: &mut Seams,
-    level: &Level,
-    ranked: Ranked,
-) -> LevelRecord {
-    let vertices = &level.vertices[..];
-    match ranked {
-        Ranked::ByScore(scores) => {
-            let mut order = by_score(vertices, &scores);
-            order.retain(|&v| !anchors.is_stitched(v));
-            remove_in_order(surface, geometry, &order, Some(memory), seams)
+/// Removes levels of a surface: what is kept from one level to the next.
+pub(crate) struct Remover<'a, 'b> {
+    pub(crate) surface: &'a mut SurfaceEditor,
+    pub(crate) geometry: Geometry<'a>,
+    pub(crate) memory: &'a mut ErrorMemory<'b>,
+    pub(crate) anchors: &'a Anchors,
+    pub(crate) seams: &'a mut Seams,
+}
+
+impl Remover<'_, '_> {
+    /// Removes the odd vertices of `level`. `ranked` says in which order, or which of them, go. `max_valence`: the largest
+    /// valence of an odd vertex, if not the usual one.
+    pub(crate) fn remove(
+        &mut self,
+        level: &Level,
+        ranked: Ranked,
+        optimize: Optimize,
+        max_valence: Option<u32>,
+    ) -> LevelRecord {
+        match ranked {
+            Ranked::ByScore(scores) => {
+                let mut order = by_score(&level.vertices, &scores);
+                order.retain(|&v| !self.anchors.is_stitched(v));
+                remove_in_order(self.surface, self.geometry, &order, Some(self.memory), self.seams)
+            }
+            Ranked::BySaliency { saliency, rings } => {
+                let mut thinning = Thinning::of_level(optimize, level.vertices.len(), self.surface);
+                thinning.max_valence = max_valence.unwrap_or(thinning.max_valence);
+                let chosen = self.choose(&level.vertices, (saliency, rings), optimize, thinning);
+                self.remove_as_decoded(&level.faces, chosen, thinning.tolerance)
+            }
         }
-        Ranked::BySaliency { saliency, rings } => {
-            let thinning = Thinning::of_level(optimize, vertices.len(), surface);
-            let max_valence = max_valence.unwrap_or(thinning.max_valence);
-            let mut free = saliency.least();
-            free.retain(|&place| {
-                rings.valence(place) <= max_valence as usize && !anchors.contain(vertices[place as usize])
-            });
-            leave_seams(optimize, surface, seams, vertices, &mut free);
-            let ((), chosen) = rayon::join(
-                || surface.forget(vertices, |place| rings.of(place)),
-                || closely_packed(&rings, &free),
-            );
-            let chosen = chosen.into_iter().map(|place| vertices[place as usize]).collect();
-            drop((saliency, rings));
-            remove_as_decoded(
-                surface,
-                geometry,
-                &level.faces,
-                chosen,
-                thinning.tolerance,
-                memory,
-                anchors,
-                seams,
-            )
+    }
+
+    /// Chooses the odd vertices of a level, none next to another, and forgets the neighbours of its vertices.
+    fn choose(
+        &mut self,
+        vertices: &[u32],
+        (saliency, rings): (Saliency, Rings),
+        optimize: Optimize,
+        thinning: Thinning,
+    ) -> Vec<u32> {
+        let mut free = saliency.least();
+        free.retain(|&place| {
+            let is_anchor = self.anchors.contain(vertices[place as usize]);
+            rings.valence(place) <= thinning.max_valence as usize && !is_anchor
+        });
+        leave_seams(optimize, self.surface, self.seams, vertices, &mut free);
+        let ((), chosen) = rayon::join(
+            || self.surface.forget(vertices, |place| rings.of(place)),
+            || closely_packed(&rings, &free),
+        );
+        chosen.into_iter().map(|place| vertices[place as usize]).collect()
+    }
+
+    /// Removes the vertices of `chosen`, none next to another, in the reverse of the order in which a decoder
+    /// restores them: the ears of the boundary last. Those that cannot go stay, which costs some bits where
+    /// the order then differs.
+    fn remove_as_decoded(&mut self, faces: &[u32], mut chosen: Vec<u32>, tolerance: f64) -> LevelRecord {
+        let Self { surface, geometry, memory, anchors, seams } = self;
+        let Geometry { grid, positions } = *geometry;
+        let sees_fans = tolerance < f64::INFINITY && seams.is_empty();
+        let evaluator = Evaluator { surface, grid, positions, memory, sees_fans };
+        let mut odd: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
+        chosen.iter().for_each(|&v| odd.set(v as usize, true));
+        chosen.sort_unstable();
+        let (order, outlook) = rayon::join(
+            || patch_order(surface, faces, &odd, anchors),
+            || CollapseCosts::new(evaluator, &chosen),
+        );
+        let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;
+        let (ears, patches): (Vec<u32>, Vec<u32>) = order.into_iter().rev().partition(is_ear);
+        let mut record = LevelRecord::default();
+        let mut star = Star::default();
+        let mut filler = HoleFiller::default();
+        for corner in patches.into_iter().chain(ears) {
+            let ahead = outlook.read(surface.surface.vertex(corner), corner, &mut star);
+            let demand = demand_that_is_met(seams, surface, *geometry, &star, tolerance, &mut filler);
+            let filled = match demand {
+                Demand::Stay => continue,
+                Demand::None => {
+                    filler.fill_as_foreseen(surface, &star, grid, positions, tolerance, ahead.prospect)
+                }
+                _ => filler.fill(surface, &star, grid, positions, tolerance, demand),
+            };
+            let Some(ears) = filled else { continue };
+            match ahead.heir {
+                Some(heir) => memory.hand_on_to(star.vertex, heir),
+                None => memory.hand_on(&star),
+            }
+            let faces = surface.remove(&star, ears);
+            record.push(star.vertex, &star.ring, faces);
+            seams.remove(&star, ears, &mut record);
         }
+        record.shrink_to_fit();
+        record
     }
 }
 
@@ -135,56 +185,6 @@ pub(crate) fn remove_in_order(
         record.push(vertex, &star.ring, faces);
         seams.remove(&star, ears, &mut record);
         star.ring.iter().for_each(|&v| tagged.set(v as usize, true));
-    }
-    record.shrink_to_fit();
-    record
-}
-
-/// Removes the vertices of `chosen`, none next to another, in the reverse of the order in which a decoder
-/// restores them: the ears of the boundary last. Those that cannot go stay, which costs some bits where
-/// the order then differs.
-#[expect(clippy::too_many_arguments, reason = "as above")]
-fn remove_as_decoded(
-    surface: &mut SurfaceEditor,
-    geometry: Geometry,
-    faces: &[u32],
-    mut chosen: Vec<u32>,
-    tolerance: f64,
-    memory: &mut ErrorMemory,
-    anchors: &Anchors,
-    seams: &mut Seams,
-) -> LevelRecord {
-    let Geometry { grid, positions } = geometry;
-    let sees_fans = tolerance < f64::INFINITY && seams.is_empty();
-    let evaluator = Evaluator { surface, grid, positions, memory, sees_fans };
-    let mut odd: BitVec = BitVec::repeat(false, surface.surface.corner_of.len());
-    chosen.iter().for_each(|&v| odd.set(v as usize, true));
-    chosen.sort_unstable();
-    let (order, outlook) =
-        rayon::join(|| patch_order(surface, faces, &odd, anchors), || CollapseCosts::new(evaluator, &chosen));
-    let is_ear = |&corner: &u32| surface.surface.valence[surface.surface.vertex(corner) as usize] == 2;
-    let (ears, patches): (Vec<u32>, Vec<u32>) = order.into_iter().rev().partition(is_ear);
-    let mut record = LevelRecord::default();
-    let mut star = Star::default();
-    let mut filler = HoleFiller::default();
-    for corner in patches.into_iter().chain(ears) {
-        let ahead = outlook.read(surface.surface.vertex(corner), corner, &mut star);
-        let demand = demand_that_is_met(seams, surface, geometry, &star, tolerance, &mut filler);
-        let filled = match demand {
-            Demand::Stay => continue,
-            Demand::None => {
-                filler.fill_as_foreseen(surface, &star, grid, positions, tolerance, ahead.prospect)
-            }
-            _ => filler.fill(surface, &star, grid, positions, tolerance, demand),
-        };
-        let Some(ears) = filled else { continue };
-        match ahead.heir {
-            Some(heir) => memory.hand_on_to(star.vertex, heir),
-            None => memory.hand_on(&star),
-        }
-        let faces = surface.remove(&star, ears);
-        record.push(star.vertex, &star.ring, faces);
-        seams.remove(&star, ears, &mut record);
     }
     record.shrink_to_fit();
     record
