@@ -57,7 +57,7 @@ impl ReadOptions {
         self.read_with_progress(path, &|_| ())
     }
 
-    /// As [`read()`], telling `progress` again and again which share of the work is done, 0 to 1.
+    /// As [`read()`], calling `progress` with the share of the work done, 0 to 1.
     ///
     /// # Errors
     /// As [`read()`].
@@ -86,7 +86,7 @@ impl ReadOptions {
         self.read_scene_with_progress(path, &|_| ())
     }
 
-    /// As [`read_scene()`], telling `progress` again and again which share of the work is done, 0 to 1.
+    /// As [`read_scene()`], calling `progress` with the share of the work done, 0 to 1.
     ///
     /// # Errors
     /// As [`read()`].
@@ -119,7 +119,7 @@ impl ReadOptions {
         self.read_terrain_with_progress(path, options, &|_| ())
     }
 
-    /// As [`read_terrain()`], telling `progress` again and again which share of the work is done, 0 to 1.
+    /// As [`read_terrain()`], calling `progress` with the share of the work done, 0 to 1.
     ///
     /// # Errors
     /// As [`read_terrain()`].

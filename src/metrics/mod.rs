@@ -134,7 +134,7 @@ pub fn compare(a: &TriMesh, b: &TriMesh, options: &CompareOptions) -> Result<Com
     compare_with_progress(a, b, options, &|_| ())
 }
 
-/// As [`compare`], telling `progress` again and again which share of the points is measured, 0 to 1.
+/// As [`compare`], calling `progress` with the share of the points measured, 0 to 1.
 ///
 /// # Errors
 /// As [`compare`].

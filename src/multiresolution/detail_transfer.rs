@@ -37,7 +37,7 @@ impl DetailTransfer {
         Self::new_with_progress(bytes, num_vertices, limits, &|_| ())
     }
 
-    /// As [`DetailTransfer::new`], telling `progress` again and again which share of the work is done, 0 to 1.
+    /// As [`DetailTransfer::new`], calling `progress` with the share of the work done, 0 to 1.
     ///
     /// # Errors
     /// As [`DetailTransfer::new`].

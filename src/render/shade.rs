@@ -40,7 +40,7 @@ pub fn render(mesh: &TriMesh, paint: Paint, camera: &Camera, style: &Style) -> R
     render_with_progress(mesh, paint, camera, style, &|_| ())
 }
 
-/// As [`render`], telling `progress` again and again which share of the work is done, 0 to 1.
+/// As [`render`], calling `progress` with the share of the work done, 0 to 1.
 ///
 /// # Errors
 /// As [`render`].

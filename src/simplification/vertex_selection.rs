@@ -11,7 +11,7 @@ pub enum Optimize {
     /// The smallest whole file. No vertex is kept for its saliency; and where that is smaller, there are no
     /// levels, unless their number is given.
     Size,
-    /// Prefixes nearly as good as they get, for a file a little larger. The default.
+    /// Prefixes nearly as good as with [`Optimize::Prefix`], in a smaller file. The default.
     #[default]
     Balanced,
     /// The best prefixes.

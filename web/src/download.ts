@@ -52,7 +52,7 @@ export class Download implements AsyncIterable<Uint8Array> {
         if (this.received === before && failures >= retries) throw error;
       }
       failures = this.received > before ? 0 : failures + 1;
-      if (failures > retries) throw new DownloadError(`${this.url}: the connection is cut again and again`);
+      if (failures > retries) throw new DownloadError(`${this.url}: the connection broke off ${failures} times`);
       await sleep(retryDelay * 2 ** failures, signal);
     }
   }

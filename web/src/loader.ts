@@ -1,4 +1,4 @@
-/** Loader of three.js for lwc streams: something at once, then finer while it loads. @module */
+/** Loader of three.js for lwc streams: a coarse mesh at once, finer while it loads. @module */
 
 import {
   Loader,

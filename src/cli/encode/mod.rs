@@ -141,7 +141,7 @@ fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
     {
         ui.note(
             name,
-            "in one piece: nothing shows before the last byte has come; `--levels 99` keeps levels",
+            "in one piece: there is nothing to show before the last byte; `--levels 99` keeps levels",
         );
     }
     let RepairReport { degenerate_triangles, isolated_vertices, repeated_vertices } = encoded.repair;
