@@ -8,7 +8,7 @@ use common::corpus::corpus;
 use common::workshop::*;
 use common::*;
 use lwc::descriptors::{Descriptor, Window, evaluate, mean_edge_length};
-use lwc::io;
+use lwc::{TriMesh, io};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -45,6 +45,33 @@ fn options_in(text: &str) -> BTreeSet<&str> {
 fn help_has_a_command_too() {
     let workshop = Workshop::new();
     assert_eq!(workshop.ok("help decode"), workshop.ok("decode --help"));
+}
+
+/// A bar of 1 m along x with a square of 1 mm, cut into slices.
+fn thin_bar() -> TriMesh {
+    let square = [[0.0, 0.0], [0.001, 0.0], [0.001, 0.001], [0.0, 0.001]];
+    let slices = 0..=20;
+    let positions = slices.flat_map(|i| square.map(|[y, z]| [f64::from(i) / 20.0, y, z])).collect();
+    let side = |i: u32, k: u32| {
+        let [a, b] = [4 * i + k, 4 * i + (k + 1) % 4];
+        [[a, a + 4, b], [b, a + 4, b + 4]]
+    };
+    let sides = (0..20).flat_map(|i| (0..4).flat_map(move |k| side(i, k)));
+    TriMesh::new(positions, sides.collect()).unwrap()
+}
+
+#[test]
+fn a_grid_that_is_too_coarse_is_said_with_the_bits_that_do() {
+    let workshop = Workshop::new();
+    io::write(workshop.path("bar.obj"), &thin_bar()).unwrap();
+    let (_, stderr) = workshop.ok("encode bar.obj -q 8 -o coarse.lwc");
+    assert!(stderr.contains("160 of 160 triangles collapse or turn over on the grid"), "{stderr}");
+    assert!(stderr.contains("8 bits: steps of 3.92e-3, vertices off by at most"), "{stderr}");
+    let bits = stderr.split("`-q ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();
+    let (_, stderr) = workshop.ok(&format!("encode bar.obj -q {bits} -o fine.lwc"));
+    assert!(!stderr.contains("warning"), "{stderr}");
+    let (_, stderr) = workshop.ok("encode bar.obj -q 8 --lossless -o exact.lwc");
+    assert!(!stderr.contains("warning") && !stderr.contains("steps of"), "{stderr}");
 }
 
 #[test]

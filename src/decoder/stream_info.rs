@@ -185,7 +185,7 @@ impl StreamInfo {
         self.grid.origin
     }
 
-    /// Side of the grid, model units: 2^precision − 1 steps.
+    /// Side of the grid, model units: 2^quantization_bits − 1 steps.
     pub fn side(&self) -> f64 {
         self.grid.side
     }

@@ -1,6 +1,7 @@
 //! `lwc encode`: a mesh file becomes a stream.
 
 pub mod args;
+mod grid_loss;
 mod report;
 
 use super::bar::Part;
@@ -13,6 +14,7 @@ use super::ui::Ui;
 use super::verify;
 use anyhow::Context;
 use args::Encode;
+use grid_loss::GridLoss;
 use lwc::io::{Format, MeshFile};
 use lwc::mesh::{Attribute, Attributes, Semantic};
 use lwc::{EncodeOptions, Encoded, RepairReport};
@@ -53,10 +55,14 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         verify::verify(&file, &options, &encoded, verifying).with_context(|| name.clone())?;
         ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
     }
+    let grid = GridLoss::new(&file.mesh, &encoded.info, args.lossless);
     drop(bar);
+    if let Some(warning) = grid.as_ref().and_then(|grid| grid.warning(&file.mesh)) {
+        ui.warn(&name, &warning);
+    }
     destination.write(|out| out.write_all(&encoded.bytes))?;
     let (file, encoded) = (&file, &encoded);
-    let report = Report { args, file, left_out, encoded, destination, read_seconds, encode_seconds };
+    let report = Report { args, file, left_out, encoded, grid, destination, read_seconds, encode_seconds };
     report.print(ui)
 }
 

@@ -1,6 +1,7 @@
 //! What is told of a stream that was written.
 
 use super::args::Encode;
+use super::grid_loss::GridLoss;
 use crate::cli::output::{Destination, print_json};
 use crate::cli::passes;
 use crate::cli::quantity::counted;
@@ -17,6 +18,8 @@ pub struct Report<'a> {
     /// Attributes that were not wanted.
     pub left_out: Vec<String>,
     pub encoded: &'a Encoded,
+    /// Unless coordinates are kept bit for bit.
+    pub grid: Option<GridLoss>,
     pub destination: Destination,
     pub read_seconds: f64,
     pub encode_seconds: f64,
@@ -57,13 +60,17 @@ impl Report<'_> {
         let finest = info.passes().last();
         let vertices = finest.map_or(0, |p| p.vertices as usize - repair.repeated_vertices);
         let ratio = self.ratio().map(|r| format!(", {:.1} % of {}", 100.0 * r, self.args.input.display()));
+        let grid = self.grid.as_ref().map(|grid| {
+            format!(": steps of {:.2e}, vertices off by at most {:.2e}", grid.step, grid.largest_error)
+        });
         format!(
-            "{}: {}, {}, {} on the base mesh, {} bits\n{bytes} bytes, {:.2} bits per vertex{}, {:.2} s{}",
+            "{}: {}, {}, {} on the base mesh, {} bits{}\n{bytes} bytes, {:.2} bits per vertex{}, {:.2} s{}",
             self.destination.name(),
             counted(vertices, "vertex", "vertices"),
             counted(finest.map_or(0, |p| p.triangles as usize), "triangle", "triangles"),
             counted(info.finest_level() as usize, "level", "levels"),
             info.quantization_bits(),
+            grid.unwrap_or_default(),
             passes::bits_per_vertex(bytes, info),
             ratio.unwrap_or_default(),
             self.read_seconds + self.encode_seconds,
@@ -92,6 +99,9 @@ impl Report<'_> {
             "triangles": finest.map(|p| p.triangles),
             "levels": info.finest_level(),
             "quantization_bits": info.quantization_bits(),
+            "step": self.grid.as_ref().map(|grid| grid.step),
+            "largest_error": self.grid.as_ref().map(|grid| grid.largest_error),
+            "triangles_lost": self.grid.as_ref().map(|grid| grid.triangles_lost),
             "descriptor": args.scale.descriptor.name(),
             "rings": args.scale.window.rings,
             "radius": args.scale.window.radius,
