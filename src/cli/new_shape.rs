@@ -11,9 +11,9 @@ use std::path::Path;
 /// are: they are those of the shape before.
 pub fn write(path: &Path, mesh: &TriMesh, mut attributes: Attributes, ui: &Ui) -> Result<(), WriteError> {
     let name = path.display().to_string();
-    let (normals, others) = attributes.list.into_iter().partition(|a| a.semantic == Semantic::Normal);
+    let (normals, others): (Vec<_>, Vec<_>) =
+        attributes.list.into_iter().partition(|attribute| attribute.semantic == Semantic::Normal);
     attributes.list = others;
-    let normals: Vec<_> = normals;
     if !normals.is_empty() {
         ui.warn(&name, "normals left out: they are those of the shape before");
     }
