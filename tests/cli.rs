@@ -57,7 +57,7 @@ fn thin_bar() -> TriMesh {
         [[a, a + 4, b], [b, a + 4, b + 4]]
     };
     let sides = (0..20).flat_map(|i| (0..4).flat_map(move |k| side(i, k)));
-    TriMesh::new(positions, sides.collect()).unwrap()
+    build(positions, sides.collect())
 }
 
 #[test]
