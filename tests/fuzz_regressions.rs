@@ -2,6 +2,7 @@
 #![cfg(feature = "fuzzing")]
 
 use lwc::fuzzing;
+use lwc::io::Format;
 use std::path::Path;
 
 fn finding(name: &str) -> Vec<u8> {
@@ -20,6 +21,12 @@ fn a_payload_of_zeros_is_not_damage() {
 #[test]
 fn attributes_are_without_gaps_whatever_has_come() {
     fuzzing::decode(&finding("decode_attributes_of_nonsense.bin"));
+}
+
+/// Colours of ZBrush have 8 bits, and OBJ writes them as decimals: the same numbers in another type.
+#[test]
+fn colours_of_8_bits_are_the_same_numbers_in_decimals() {
+    fuzzing::read_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\n#MRGB ff440099ff123456ff808080\nf 1 2 3\n", Format::Obj);
 }
 
 /// A few inputs of the fuzz targets that reach attributes, made up without a fuzzer.

@@ -413,13 +413,22 @@ fn ignore_panics_of_laz() {
 /// Whether two attributes look the same from every corner, except for values that one of them lacks.
 fn have_equal_values(mesh: &TriMesh, a: &Attribute, b: &Attribute) -> bool {
     let n = a.num_components;
+    // Fractions of 8 bits are written as decimals where a format has no such type.
+    let is_same_type = a.values.component_type() == b.values.component_type();
+    let number = |attribute: &Attribute, entry: usize, k: usize| {
+        if is_same_type {
+            attribute.values.bits(entry * n + k)
+        } else {
+            attribute.number(entry, k).map(f64::to_bits)
+        }
+    };
     let value = |attribute: &Attribute, triangle: usize, corner: usize| {
-        let row = attribute.entry_at_corner(mesh, triangle, corner)?;
-        let bits: Vec<_> = (0..n).map(|k| attribute.values.bits(row * n + k)).collect();
-        Some((bits, attribute.values.names().map(|names| names[row].clone())))
+        let entry = attribute.entry_at_corner(mesh, triangle, corner)?;
+        let numbers: Vec<_> = (0..n).map(|k| number(attribute, entry, k)).collect();
+        Some((numbers, attribute.values.names().map(|names| names[entry].clone())))
     };
     n == b.num_components
-        && a.values.component_type() == b.values.component_type()
+        && (is_same_type || a.is_normalized)
         && (0..3 * mesh.num_triangles()).all(|k| {
             let (a, b) = (value(a, k / 3, k % 3), value(b, k / 3, k % 3));
             a.is_none() || b.is_none() || a == b
