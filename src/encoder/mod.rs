@@ -98,8 +98,7 @@ fn smallest_stream(
     let attempts = options.hierarchies_tried();
     let mut surface = Some(surface);
     let mut smallest: Vec<u8> = Vec::new();
-    let num_schedules = schedule::num_tried(options);
-    let tries = Tries::new(&attempts, num_schedules, progress);
+    let tries = Tries::new(&attempts, options.steps_tried().len(), progress);
     for (i, &attempt) in attempts.iter().enumerate() {
         let is_last = i + 1 == attempts.len();
         let taken = if is_last { surface.take() } else { surface.clone() }.unwrap_or_default();

@@ -118,14 +118,18 @@ impl EncodeOptions {
     }
 
     /// Quantization bits that are tried, as grid steps to the mean edge; `None` follows the errors.
-    pub(super) fn steps_tried(&self) -> &'static [Option<f64>] {
+    pub(super) fn steps_tried(&self) -> Vec<Option<f64>> {
         const AT_ONCE: Option<f64> = Some(f64::MAX);
-        match (self.optimize, self.effort) {
+        if self.steps_per_edge.is_some() {
+            return vec![self.steps_per_edge];
+        }
+        let tried: &[_] = match (self.optimize, self.effort) {
             (Optimize::Size, Self::HIGH_EFFORT..) => &[None, AT_ONCE, Some(32.0), Some(64.0)],
             // Only a trial shows which surfaces are smaller with all bits at once.
             (Optimize::Size, Self::LOW_EFFORT..) => &[None, AT_ONCE],
             _ => &[None],
-        }
+        };
+        tried.to_vec()
     }
 
     pub(super) fn check(&self) -> Result<(), EncodeError> {

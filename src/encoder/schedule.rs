@@ -16,17 +16,9 @@ const ROUNDING_SHARE: f64 = 0.25;
 
 /// The schedules of a hierarchy that the options try. Without a split there is one only.
 pub(super) fn tried(hierarchy: &Hierarchy, options: &EncodeOptions) -> impl Iterator<Item = Schedule> {
-    let tried = if hierarchy.records.is_empty() { &[None] } else { steps_tried(options) };
-    tried.iter().map(|&steps| plan(hierarchy, options.quantization_bits, options.steps_per_edge.or(steps)))
-}
-
-/// The most schedules that a hierarchy has.
-pub(super) fn num_tried(options: &EncodeOptions) -> usize {
-    steps_tried(options).len()
-}
-
-fn steps_tried(options: &EncodeOptions) -> &'static [Option<f64>] {
-    if options.steps_per_edge.is_some() { &[None] } else { options.steps_tried() }
+    let most = if hierarchy.records.is_empty() { 1 } else { usize::MAX };
+    let tried = options.steps_tried().into_iter().take(most);
+    tried.map(|steps| plan(hierarchy, options.quantization_bits, steps))
 }
 
 /// Each split comes with the bits its level needs; what is missing then follows the last split.

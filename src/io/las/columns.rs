@@ -64,7 +64,8 @@ impl Number {
 /// The columns of a file, and whether all of its extra bytes are among them.
 pub(super) fn columns(header: &Header, bytes: &[u8]) -> (Vec<Column>, bool) {
     let mut columns: Vec<Column> = near_infrared(header.format).into_iter().collect();
-    let (_, mut at) = layout(header.format).unwrap_or_default();
+    let (_, least_bytes) = layout(header.format).unwrap_or_default();
+    let mut at = least_bytes;
     let descriptions =
         variable_records(header, bytes).filter(|r| r.user.starts_with(b"LASF_Spec") && r.id == 4);
     for description in descriptions.flat_map(|record| record.data.chunks_exact(DESCRIPTION_BYTES)) {
@@ -79,7 +80,6 @@ pub(super) fn columns(header: &Header, bytes: &[u8]) -> (Vec<Column>, bool) {
             columns.push(column);
         }
     }
-    let (_, least_bytes) = layout(header.format).unwrap_or_default();
     let kept: usize = columns.iter().filter(|c| c.at >= least_bytes).map(|c| c.number.num_bytes()).sum();
     (columns, least_bytes + kept == header.record_bytes)
 }
@@ -123,7 +123,7 @@ impl Column {
     }
 
     /// The values of these points: in the type of the file, as `f64` if they have a scale or 64 bits.
-    pub fn attribute(&self, points: impl Iterator<Item = u32> + Clone) -> Attribute {
+    pub fn attribute(&self, points: impl Iterator<Item = u32>) -> Attribute {
         let values = match (self.number, self.scaling) {
             (Number::Of(component_type), None) => self.stored(component_type, points),
             (number, scaling) => {
