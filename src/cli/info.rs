@@ -101,11 +101,6 @@ fn partition(info: &StreamInfo) -> Option<&'static str> {
     Some(Partition::ALL.into_iter().find(|p| *p as u8 == code).map_or("unknown", Partition::name))
 }
 
-/// Side of a cell of the finest grid, model units.
-fn step(info: &StreamInfo) -> f64 {
-    info.side() / ((1_u64 << info.quantization_bits()) - 1) as f64
-}
-
 fn header_bytes(info: &StreamInfo) -> u64 {
     info.passes()
         .first()
@@ -139,7 +134,7 @@ fn print(
         writeln!(out, "finest      level {level}, {vertices} vertices, {triangles} triangles")?;
     }
     let [x, y, z] = info.origin();
-    let (bits, side, step) = (info.quantization_bits(), info.side(), step(info));
+    let (bits, side, step) = (info.quantization_bits(), info.side(), info.step());
     writeln!(out, "grid        {bits} bits, origin ({x}, {y}, {z}), side {side}, step {step}")?;
     if let (Some(descriptor), Some((rings, radius, growth))) = (descriptor(info), info.window()) {
         writeln!(
@@ -173,7 +168,7 @@ fn to_json(info: &StreamInfo, attribute_bytes: &[u64], name: &str, present: u64)
         "quantization_bits": info.quantization_bits(),
         "origin": info.origin(),
         "side": info.side(),
-        "step": step(info),
+        "step": info.step(),
         "descriptor": descriptor(info),
         "rings": window.map(|w| w.0),
         "radius": window.map(|w| w.1),

@@ -185,6 +185,11 @@ impl StreamInfo {
         self.grid.origin
     }
 
+    /// Side of a cell of the finest grid, model units.
+    pub fn step(&self) -> f64 {
+        self.grid.step(self.grid.quantization_bits)
+    }
+
     /// Side of the grid, model units: 2^quantization_bits − 1 steps.
     pub fn side(&self) -> f64 {
         self.grid.side

@@ -31,7 +31,7 @@ impl GridLoss {
         let mut finer = info.quantization_bits() + 1..=MAX_BITS;
         let is_enough = |bits: &u32| grid(*bits).triangles_lost(mesh) <= most;
         let bits_that_do = if triangles_lost > most { finer.find(is_enough) } else { None };
-        let (step, largest_error) = (1.0 / used.steps, used.largest_error(mesh));
+        let (step, largest_error) = (info.step(), used.largest_error(mesh));
         Some(Self { step, largest_error, triangles_lost, bits_that_do })
     }
 
