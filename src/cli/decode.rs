@@ -2,8 +2,7 @@
 
 use super::args::LimitArgs;
 use super::exit::Failure;
-use super::new_shape;
-use super::output::{Destination, say_written, size_of, with_ending};
+use super::output::{Destination, say_written, size_of, warn_left_out, with_ending};
 use super::quantity;
 use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, note_if_no_level, reached};
 use super::ui::Ui;
@@ -76,7 +75,7 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     }
     let report = write(&destination, format, &mesh, &attributes)?;
     drop(bar);
-    new_shape::warn_of(&destination, &report, ui);
+    warn_left_out(&destination, &report, ui);
     let how_far = reached(&decoder).unwrap_or_default();
     say_written(&destination, &format!("{}, {how_far}", size_of(&mesh)), ui);
     Ok(())

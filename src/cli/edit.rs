@@ -8,10 +8,9 @@ use super::output::{Destination, say_written, size_of};
 use super::stream::StreamSource;
 use super::ui::Ui;
 use anyhow::Context;
+use lwc::StreamInfo;
 use lwc::io::{Format, WriteError};
-use lwc::mesh::Attributes;
 use lwc::multiresolution::DetailTransfer;
-use lwc::{DecodeError, Decoder, Limits, StreamInfo, TriMesh};
 use std::io;
 use std::path::PathBuf;
 
@@ -40,28 +39,6 @@ pub struct Edit {
     pub reading: Reading,
     #[command(flatten)]
     pub limits: LimitArgs,
-}
-
-/// The attributes of the stream, which hold for the edited mesh if its triangles are those of the stream.
-fn attributes_of(
-    bytes: &[u8],
-    mesh: &TriMesh,
-    limits: Limits,
-    name: &str,
-    ui: &Ui,
-) -> anyhow::Result<Attributes> {
-    let mut decoder = Decoder::new(limits);
-    decoder.push(bytes).with_context(|| name.to_owned())?;
-    let decoded = decoder.to_tri_mesh_with_attributes();
-    let (decoded, attributes) = decoded.ok_or(DecodeError::NoMesh).with_context(|| name.to_owned())?;
-    if attributes.list.is_empty() || decoded.triangles() == mesh.triangles() {
-        return Ok(attributes);
-    }
-    ui.warn(
-        name,
-        "attributes left out: the stream has isolated vertices, degenerate triangles or an order of its own",
-    );
-    Ok(Attributes::default())
 }
 
 /// A level is decoded with the meshes of a scene in their places, and has other vertices than the stream.
@@ -98,10 +75,14 @@ pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
         .with_context(|| source.name())?;
     editing.set(0.0);
     let level = edition.level();
+    let attributes = edition.attributes().cloned();
+    if attributes.is_none() {
+        let what = "attributes left out: the stream has isolated vertices, degenerate triangles or an order of its own";
+        ui.warn(&source.name(), what);
+    }
     let mesh = edition.apply(&changed).with_context(|| args.changed.display().to_string())?;
-    let attributes = attributes_of(&bytes, &mesh, limits, &source.name(), ui)?;
     writing.set(0.0);
-    new_shape::write(path, &mesh, attributes, ui).with_context(|| destination.name())?;
+    new_shape::write(path, &mesh, attributes.unwrap_or_default(), ui).with_context(|| destination.name())?;
     drop(bar);
     say_written(&destination, &format!("{}, details above level {level}", size_of(&mesh)), ui);
     Ok(())

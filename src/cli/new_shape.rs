@@ -1,9 +1,9 @@
 //! Meshes whose shape has changed: which of the attributes still hold.
 
-use super::output::Destination;
+use super::output::{Destination, warn_left_out};
 use super::ui::Ui;
 use lwc::TriMesh;
-use lwc::io::{self, WriteError, WriteReport};
+use lwc::io::{self, WriteError};
 use lwc::mesh::{Attributes, Semantic};
 use std::path::Path;
 
@@ -18,15 +18,6 @@ pub fn write(path: &Path, mesh: &TriMesh, mut attributes: Attributes, ui: &Ui) -
         ui.warn(&name, "normals left out: they are those of the shape before");
     }
     let report = io::write_with_attributes(path, mesh, &attributes)?;
-    warn_of(&Destination::File(path.to_owned()), &report, ui);
+    warn_left_out(&Destination::File(path.to_owned()), &report, ui);
     Ok(())
-}
-
-/// Says what a format had no place for.
-pub fn warn_of(destination: &Destination, report: &WriteReport, ui: &Ui) {
-    for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {
-        if !names.is_empty() {
-            ui.warn(&destination.name(), &format!("{what}: {}", names.join(", ")));
-        }
-    }
 }

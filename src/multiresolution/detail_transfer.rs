@@ -7,7 +7,7 @@ use super::lift::vertex_normals;
 use super::options::Prediction;
 use crate::encoder::quantize::unit_near;
 use crate::limits::Limits;
-use crate::mesh::{TriMesh, has_three_vertices};
+use crate::mesh::{Attributes, TriMesh, has_three_vertices};
 use glam::DVec3;
 
 /// What of the time decoding the stream takes; the rest are details.
@@ -26,6 +26,7 @@ pub struct DetailTransfer {
     /// frames of the vertices.
     refinements: Vec<DVec3>,
     decomposition: Decomposition,
+    attributes: Option<Attributes>,
 }
 
 impl DetailTransfer {
@@ -48,12 +49,14 @@ impl DetailTransfer {
         progress: &dyn Fn(f64),
     ) -> Result<Self, EditError> {
         let of_stream = |done: f64| progress(done * SHARE_OF_DECODING);
-        let StreamHierarchy { hierarchy, coarse: cut, fine, joined } =
+        let StreamHierarchy { hierarchy, coarse: cut, fine, joined, whole: (whole, attributes) } =
             Hierarchy::of_stream(bytes, num_vertices, limits, &of_stream)?;
         let of_details = |done: f64| progress(SHARE_OF_DECODING + done * (1.0 - SHARE_OF_DECODING));
         let finest_level =
             crate::decoder::StreamInfo::read(bytes)?.map_or(0, |info| info.finest_level() as usize);
         let level = finest_level - hierarchy.num_levels();
+        let is_same_mesh = join(&fine, &joined).triangles() == whole.triangles();
+        let attributes = (attributes.list.is_empty() || is_same_mesh).then_some(attributes);
         let (low, high) = fine.bounding_box().ok_or(EditError::Incomplete)?;
         let unit = unit_near((0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max));
         let (positions, places) = (points(&fine, unit), points(&cut, unit));
@@ -67,12 +70,18 @@ impl DetailTransfer {
         decomposition.input = fine;
         decomposition.unit = unit;
         let coarse = join(&cut, &joined);
-        Ok(Self { level, cut, coarse, joined, refinements, decomposition })
+        Ok(Self { level, cut, coarse, joined, refinements, decomposition, attributes })
     }
 
     /// The level that may be changed.
     pub fn level(&self) -> usize {
         self.level
+    }
+
+    /// The attributes of the stream, which hold for the mesh of [`DetailTransfer::apply`] as well. `None` if the stream has
+    /// isolated vertices, degenerate triangles or an order of its own, which that mesh has not.
+    pub fn attributes(&self) -> Option<&Attributes> {
+        self.attributes.as_ref()
     }
 
     /// The mesh to change: what a decoder of that level gives.

@@ -8,7 +8,7 @@ use crate::encoder::quantize::{LEGALITY_BITS, quantize};
 use crate::error::EncodeError;
 use crate::limits::Limits;
 use crate::mesh::repair::{Repaired, repair};
-use crate::mesh::{Surface, TriMesh};
+use crate::mesh::{Attributes, Surface, TriMesh};
 use crate::simplification::hierarchy::{Descent, Settings};
 use crate::simplification::level::Level;
 use crate::simplification::partition::Geometry;
@@ -38,6 +38,8 @@ pub(super) struct StreamHierarchy {
     pub(super) fine: TriMesh,
     /// For each vertex of the finest mesh the one that it is when joined; those of the coarse mesh come first.
     pub(super) joined: Vec<u32>,
+    /// The mesh that was encoded, and its attributes.
+    pub(super) whole: (TriMesh, Attributes),
 }
 
 impl Hierarchy {
@@ -142,7 +144,8 @@ impl Hierarchy {
         let coarse = coarse.into_iter().find(|coarse| is_it(coarse.num_vertices()));
         let levels = || counts.iter().map(|&count| num_joined(count)).collect();
         let coarse = coarse.ok_or_else(|| EditError::Vertices { found: num_vertices, levels: levels() })?;
-        Ok(StreamHierarchy { hierarchy, coarse, fine, joined })
+        let whole = decoder.to_tri_mesh_with_attributes().ok_or(EditError::Incomplete)?;
+        Ok(StreamHierarchy { hierarchy, coarse, fine, joined, whole })
     }
 
     /// Rings of the vertices that M^{level+1} has beyond M^level, counter-clockwise; an open one goes
