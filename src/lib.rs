@@ -90,6 +90,7 @@ pub mod fuzzing;
 #[cfg(feature = "io")]
 pub mod io;
 mod limits;
+pub mod losses;
 pub mod mesh;
 #[cfg(feature = "metrics")]
 pub mod metrics;

@@ -1,0 +1,116 @@
+//! Losses as people read them.
+
+use super::{Loss, LossKind, Losses};
+use std::fmt;
+
+impl fmt::Display for Losses {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, loss) in self.iter().enumerate() {
+            let newline = if k > 0 { "\n" } else { "" };
+            write!(f, "{newline}{loss}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Loss {
+    /// One sentence without a full stop: `12 of 40 triangles collapsed: `-q 16` keeps them`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.what())?;
+        if let Some(error) = self.largest_error {
+            write!(f, ", by at most {}", Short(error))?;
+        }
+        if let Some(edges) = self.largest_error_in_edges {
+            write!(f, ", {} of an edge", Short(edges))?;
+        }
+        if !self.remedy.is_empty() {
+            write!(f, ": {}", self.remedy)?;
+        }
+        Ok(())
+    }
+}
+
+impl Loss {
+    /// What happens to what and to how many.
+    fn what(&self) -> String {
+        let subject = &self.subject;
+        match self.kind {
+            LossKind::Dropped if self.count.is_none() => format!("not kept: {subject}"),
+            LossKind::Dropped => format!("{}{subject} left out", self.counts()),
+            LossKind::PositionsRounded => format!("{}positions rounded{}", self.counts(), to(subject)),
+            LossKind::TrianglesCollapsed => format!("{}triangles collapsed", self.counts()),
+            LossKind::TrianglesTurned => format!("{}triangles turned over", self.counts()),
+            LossKind::ValuesRounded => format!("{}values of {subject} rounded", self.counts()),
+            LossKind::IdentifiersChanged => format!("{}identifiers of {subject} changed", self.counts()),
+            LossKind::ValuesConverted => format!("{}values of {subject} converted", self.counts()),
+            LossKind::ValuesFilled => format!("{subject}: {}elements without value have one", self.counts()),
+            LossKind::NamesChanged => format!("{}names of {subject} changed", self.counts()),
+            LossKind::PolygonsTriangulated => format!("{}polygons cut into triangles", self.counts()),
+            LossKind::VerticesJoined => format!("{}vertices joined with others", self.counts()),
+            LossKind::VerticesSplit => format!("{}vertices repeated", self.counts()),
+            LossKind::Reordered => "vertices and triangles in another order".to_owned(),
+            LossKind::Coarser => format!("coarser than the whole stream{}", in_parentheses(subject)),
+        }
+    }
+
+    /// `12 `, `12 of 40 ` or nothing.
+    fn counts(&self) -> String {
+        match (self.count, self.total) {
+            (Some(count), Some(total)) => format!("{count} of {total} "),
+            (Some(count), None) => format!("{count} "),
+            (None, _) => String::new(),
+        }
+    }
+}
+
+fn to(subject: &str) -> String {
+    if subject.is_empty() { String::new() } else { format!(" to {subject}") }
+}
+
+fn in_parentheses(subject: &str) -> String {
+    if subject.is_empty() { String::new() } else { format!(" ({subject})") }
+}
+
+/// Two digits that count; the exponent only where zeros would be many.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounded: f64 = format!("{:.1e}", self.0).parse().unwrap_or(self.0);
+        if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) {
+            write!(f, "{rounded}")
+        } else {
+            write!(f, "{rounded:e}")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Stage;
+    use super::*;
+
+    #[test]
+    fn sentences_say_what_how_many_and_how_much() {
+        let loss = |kind, subject: &str| Loss::new(Stage::Encoding, kind, subject);
+        for (loss, sentence) in [
+            (loss(LossKind::Dropped, "isolated vertices").count(3), "3 isolated vertices left out"),
+            (
+                loss(LossKind::TrianglesCollapsed, "").count(12).of(40).remedy("`-q 16` keeps them"),
+                "12 of 40 triangles collapsed: `-q 16` keeps them",
+            ),
+            (
+                loss(LossKind::PositionsRounded, "").at_most(0.000_012_34),
+                "positions rounded, by at most 1.2e-5",
+            ),
+            (
+                loss(LossKind::PositionsRounded, "float32").at_most(0.25),
+                "positions rounded to float32, by at most 0.25",
+            ),
+            (loss(LossKind::ValuesRounded, "vn").at_most(12.34), "values of vn rounded, by at most 12"),
+            (loss(LossKind::Coarser, "level 3 of 9"), "coarser than the whole stream (level 3 of 9)"),
+        ] {
+            assert_eq!(loss.to_string(), sentence);
+        }
+    }
+}
