@@ -358,8 +358,12 @@ fn encode_writes_beside_the_model_and_sums_up() {
     let (stdout, stderr) = workshop.ok("encode ball.ply --verify");
     let bytes = fs::metadata(workshop.path("ball.lwc")).unwrap().len();
     assert!(stderr.starts_with("ball.lwc: 642 vertices, 1280 triangles, "), "{stderr}");
-    assert!(stderr.contains(&format!("{bytes} bytes, ")) && stderr.contains("verified"), "{stderr}");
-    assert_eq!((stdout, stderr.lines().count()), (String::new(), 2));
+    assert!(
+        stderr.contains(&format!("{bytes} bytes, "))
+            && stderr.contains("verified: all triangles, positions on the grid\n"),
+        "{stderr}"
+    );
+    assert_eq!((stdout, stderr.lines().count()), (String::new(), 4));
 
     fs::create_dir(workshop.path("deep.er")).unwrap();
     workshop.put("deep.er/two.dots.obj.zst", &sphere(1));
@@ -401,7 +405,8 @@ fn encode_reports_as_json() {
     let report = workshop.json("encode fin.obj --json --verify");
     assert_eq!(report["bytes"], fs::metadata(workshop.path("fin.lwc")).unwrap().len());
     assert_eq!((&report["input_vertices"], &report["input_triangles"]), (&50.into(), &73.into()));
-    assert_eq!((&report["output"], &report["verified"]), (&"fin.lwc".into(), &true.into()));
+    assert_eq!(report["output"], "fin.lwc");
+    assert_eq!(report["verified"], "all triangles, positions on the grid");
     assert!(report["repeated_vertices"].as_u64() > Some(0));
     let passes = report["passes"].as_array().unwrap();
     assert_eq!(passes.last().unwrap()["end"], report["bytes"]);
@@ -417,9 +422,9 @@ fn what_is_dropped_is_counted() {
     let (_, stderr) = workshop.ok("encode odd.obj --verify");
     for warning in [
         "1 polygon cut into triangles",
-        "1 face of fewer than three corners left out",
-        "1 degenerate triangle dropped",
-        "1 vertex without triangles dropped",
+        "left out: faces of fewer than three corners (1)",
+        "left out: degenerate triangles (1): `--keep-degenerate` keeps them",
+        "left out: vertices without triangles (1): `--keep-isolated` keeps them",
     ] {
         assert!(stderr.contains(&format!("lwc: warning: odd.obj: {warning}")), "{warning}: {stderr}");
     }
@@ -434,7 +439,7 @@ fn nothing_is_dropped_if_nobody_wants_that() {
     let wanted = lwc::io::read(workshop.path("odd.obj")).unwrap().mesh;
     let flags = "--lossless --keep-order --keep-isolated --keep-degenerate --verify";
     let (_, stderr) = workshop.ok(&format!("encode odd.obj {flags} -q 10"));
-    assert!(!stderr.contains("dropped"), "{stderr}");
+    assert!(!stderr.contains("left out"), "{stderr}");
     for file in ["odd.ply", "odd.decoded.obj"] {
         workshop.ok(&format!("decode odd.lwc -o {file}"));
         let found = lwc::io::read(workshop.path(file)).unwrap().mesh;
@@ -456,6 +461,11 @@ fn nothing_is_dropped_if_nobody_wants_that() {
     );
 }
 
+fn left_out(report: &serde_json::Value) -> Vec<&str> {
+    let losses = report["losses"].as_array().unwrap().iter();
+    losses.filter(|loss| loss["kind"] == "dropped").map(|loss| loss["subject"].as_str().unwrap()).collect()
+}
+
 #[test]
 fn what_a_stream_does_not_keep_is_told() {
     let workshop = Workshop::new();
@@ -465,9 +475,9 @@ fn what_a_stream_does_not_keep_is_told() {
                0 0 0 1 2 3 0.5 0\n1 0 0 1 2 3 0.5 0\n0 1 0 1 2 3 0.5 0\n3 0 1 2\n";
     fs::write(workshop.path("rich.ply"), ply).unwrap();
     let (_, stderr) = workshop.ok("encode rich.ply");
-    assert!(stderr.contains("rich.ply: not kept: vertex.bones\n"), "{stderr}");
+    assert!(stderr.contains("rich.ply: left out: vertex.bones\n"), "{stderr}");
     let report = workshop.json("encode rich.ply --json --verify");
-    assert_eq!(report["ignored"], serde_json::json!(["vertex.bones"]));
+    assert_eq!(left_out(&report), ["vertex.bones"]);
     assert_eq!(report["attributes"].as_array().map(Vec::len), Some(2));
     let (info, _) = workshop.ok("info rich.lwc");
     assert!(info.contains("attribute   quality: 1 × 12 bits of vertices"), "{info}");
@@ -475,7 +485,7 @@ fn what_a_stream_does_not_keep_is_told() {
     let back = fs::read(workshop.path("back.ply")).unwrap();
     assert!(String::from_utf8_lossy(&back).contains("property float quality"));
     let bare = workshop.json("encode rich.ply --json --no-attributes");
-    assert_eq!(bare["ignored"], serde_json::json!(["vertex.bones", "red/green/blue", "quality"]));
+    assert_eq!(left_out(&bare), ["vertex.bones", "red green blue", "quality"]);
     assert_eq!(bare["attributes"], serde_json::json!([]));
 }
 
@@ -486,7 +496,9 @@ fn lossless_keeps_attributes_and_descriptors_say_what_they_know() {
         property float heat\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
         0 0 0 0.1\n1 0 0 nan\n0 1 0 0.30000001\n3 0 1 2\n";
     fs::write(workshop.path("shaded.ply"), shaded).unwrap();
-    assert!(workshop.ok("encode shaded.ply").1.contains("1 value of attributes left out: not finite"));
+    assert!(
+        workshop.ok("encode shaded.ply").1.contains("left out: values of attributes that are not finite (1)")
+    );
     let (_, stderr) = workshop.ok("encode shaded.ply --lossless --keep-order --verify");
     assert!(!stderr.contains("not finite"), "{stderr}");
     assert!(workshop.ok("info shaded.lwc").0.contains("values"));
@@ -570,7 +582,7 @@ fn point_clouds_become_terrain() {
     fs::write(workshop.path("scan.las"), cloud).unwrap();
     assert_eq!(workshop.json("encode scan.las --json --verify")["vertices"], 400);
     let (_, stderr) = workshop.ok("encode scan.las --last-returns");
-    assert!(stderr.contains("scan.las: 200 points left out"), "{stderr}");
+    assert!(stderr.contains("scan.las: left out: points above others, or not wanted (200)"), "{stderr}");
     let attributes = &workshop.json("encode scan.las --json")["attributes"];
     assert_eq!(attributes[0]["name"], "classification", "{attributes}");
     assert_eq!(workshop.json("encode scan.las --json --thin 2")["vertices"], 25);
@@ -829,7 +841,7 @@ fn normals_that_are_not_finite_are_told_of() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn -nan(ind) 0 1\nvn 0 0 1\nf 1//1 2//2 3//2\n";
     fs::write(workshop.path("nan.obj"), text).unwrap();
     let warning = |line: &str| workshop.ok(line).1.lines().next().unwrap_or_default().to_owned();
-    let expected = "lwc: warning: nan.obj: 1 value of attributes left out: not finite";
+    let expected = "lwc: warning: nan.obj: left out: values of attributes that are not finite (1): `--lossless` keeps them";
     assert_eq!(warning("encode nan.obj -o a.lwc"), expected);
     let expected = "lwc: warning: nan.obj: 1 normal or texture coordinate kept: not finite";
     assert_eq!(warning("encode nan.obj -o b.lwc --lossless"), expected);

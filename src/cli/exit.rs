@@ -19,6 +19,7 @@ Exit codes:
   4  a damaged stream, or one that ends before its base mesh
   5  a limit is exceeded
   6  the verification of an encoded stream failed
+  7  something would be lost, and --strict forbids that
   130, 143  stopped by Ctrl-C (SIGINT) or SIGTERM; no unfinished file is left";
 
 const OTHER: u8 = 1;
@@ -27,6 +28,7 @@ const INPUT: u8 = 3;
 const DAMAGED: u8 = 4;
 const LIMIT: u8 = 5;
 const VERIFICATION: u8 = 6;
+const LOSSY: u8 = 7;
 
 /// What goes wrong in the program itself.
 #[derive(Debug, Error)]
@@ -46,6 +48,9 @@ pub enum Failure {
     /// The encoded stream is not the mesh.
     #[error("verification failed: {0}")]
     Verification(String),
+    /// Something would be lost though nothing may be.
+    #[error("--strict, and something would be lost: {0}")]
+    Lossy(String),
 }
 
 /// Tells what went wrong. Nobody is left to read after a broken pipe: that is success.
@@ -64,6 +69,7 @@ fn code(error: &anyhow::Error) -> u8 {
             Failure::Input(_) => INPUT,
             Failure::Empty | Failure::CutTable => DAMAGED,
             Failure::Verification(_) => VERIFICATION,
+            Failure::Lossy(_) => LOSSY,
         }))
         .or(cause.downcast_ref().map(|error| match error {
             ReadError::TooLarge { .. } | ReadError::Ratio { .. } => LIMIT,
@@ -142,6 +148,7 @@ mod tests {
             (anyhow!(limit), LIMIT),
             (anyhow!(ReadError::Ratio { packed: 1, most: 2 }), LIMIT),
             (anyhow!(Failure::Verification("v".into())), VERIFICATION),
+            (anyhow!(Failure::Lossy("l".into())), LOSSY),
         ] {
             assert_eq!(code(&error.context("file")), expected);
         }

@@ -4,6 +4,7 @@ use super::args::Reading;
 use super::bar::Part;
 use super::exit::Failure;
 use super::input_file::{self, holds_stream, is_stream};
+use super::losses;
 use super::quantity::counted;
 use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete};
 use super::ui::Ui;
@@ -65,33 +66,11 @@ fn with_hint(error: ReadError) -> anyhow::Error {
 }
 
 fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
-    let report = &file.report;
     if file.mesh.num_triangles() == 0 && file.mesh.num_vertices() > 0 {
         let points = counted(file.mesh.num_vertices(), "point", "points");
         ui.warn(name, &format!("a point cloud: {points} without faces"));
     }
-    if report.polygons_triangulated > 0 {
-        let polygons = counted(report.polygons_triangulated, "polygon", "polygons");
-        ui.warn(name, &format!("{polygons} cut into triangles"));
-    }
-    if report.faces_skipped > 0 {
-        let faces = counted(report.faces_skipped, "face", "faces");
-        ui.warn(name, &format!("{faces} of fewer than three corners left out"));
-    }
-    if report.points_withheld > 0 {
-        let points = counted(report.points_withheld, "point", "points");
-        ui.warn(name, &format!("{points} left out: flagged as withheld in the file"));
-    }
-    if report.points_left_out > 0 {
-        let points = counted(report.points_left_out, "point", "points");
-        ui.warn(name, &format!("{points} left out: above others, or not wanted"));
-    }
-    if !report.ignored.is_empty() {
-        ui.warn(name, &format!("not kept: {}", report.ignored.join(", ")));
-    }
-    if report.corners_welded > 0 {
-        ui.detail(name, &format!("{} joined", counted(report.corners_welded, "corner", "corners")));
-    }
+    losses::warn(name, &file.report.losses(), ui);
 }
 
 /// As [`read_mesh`], but the meshes of a scene keep to themselves unless they are to be merged: what a stream

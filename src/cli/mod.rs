@@ -16,6 +16,7 @@ mod gain;
 pub mod info;
 mod input;
 mod input_file;
+mod losses;
 pub mod man;
 mod new_shape;
 mod output;

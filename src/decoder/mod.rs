@@ -8,6 +8,7 @@ pub(crate) mod forecast;
 mod frame;
 mod head;
 mod level_mesh;
+mod losses;
 mod options;
 mod passes;
 mod push;

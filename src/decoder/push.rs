@@ -2,6 +2,7 @@
 
 use super::attributes::AttributeDecoder;
 use super::level_mesh::LevelMesh;
+use super::losses;
 use super::options::DecodeOptions;
 use super::snapshot::Snapshot;
 use super::stream::StreamingDecoder;
@@ -9,6 +10,7 @@ use super::stream_info::StreamInfo;
 use super::update::{Step, Update};
 use crate::error::DecodeError;
 use crate::limits::Limits;
+use crate::losses::Losses;
 use crate::mesh::{Attributes, TriMesh};
 use crate::passes::work_budget::WorkBudget;
 
@@ -167,6 +169,12 @@ impl Decoder {
     /// Number of passes applied.
     pub fn passes_done(&self) -> usize {
         self.stream.done
+    }
+
+    /// What [`Decoder::mesh`] lacks of what the stream holds: levels, bits, and what follows the passes. Empty before the
+    /// base mesh, and once all has come.
+    pub fn losses(&self) -> Losses {
+        losses::losses(&self.stream)
     }
 
     /// True once the last pass of the stream, or of the wanted level, has been applied, and what belongs to it.

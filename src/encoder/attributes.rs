@@ -1,11 +1,15 @@
 //! From attributes to integers: how each is declared, and the entries of its elements.
 
-use super::options::{EncodeOptions, Input};
+use super::attribute_coding::{choose, key_of, must_be_exact};
+use super::options::Input;
+use super::rounding::rounding;
 use crate::bitstream::scene;
 use crate::error::EncodeError;
+use crate::losses::Loss;
 use crate::mesh::surface::turns;
-use crate::mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values};
-use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
+use crate::mesh::{Attribute, Domain, NO_ENTRY};
+use crate::passes::attribute::declaration::MAX_ATTRIBUTES;
+use crate::passes::attribute::declaration::MAX_TABLE;
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};
 use crate::simplification::Seams;
@@ -36,6 +40,10 @@ pub(super) struct QuantizedAttribute {
     pub(super) loose: HashMap<u32, u32>,
     /// Which of the seams' attributes it is, unless it belongs to vertices.
     pub(super) track: Option<usize>,
+    /// Whether its numbers name things, which have to come back exactly.
+    pub(super) must_be_exact: bool,
+    /// What its entries lose, unless exact values follow the passes.
+    pub(super) rounding: Option<Loss>,
 }
 
 impl Quantized {
@@ -137,7 +145,10 @@ pub(super) fn quantize(
         let track = (attribute.domain != Domain::Vertex).then_some(num_tracks);
         num_tracks += usize::from(track.is_some());
         let loose = loose.into_iter().zip(of.split_off(num_on_surface)).collect();
-        let mut one = QuantizedAttribute { declaration, entries, of, loose, track };
+        let must_be_exact = must_be_exact(attribute, &used);
+        let lossy = !(options.lossless || must_be_exact);
+        let rounding = lossy.then(|| rounding(attribute, &used, &declaration, &entries)).flatten();
+        let mut one = QuantizedAttribute { declaration, entries, of, loose, track, must_be_exact, rounding };
         if track.is_some() {
             one.merge_equal();
         }
@@ -164,107 +175,6 @@ fn compact(of: &mut [u32], num_entries: usize) -> Vec<u32> {
         *entry = *place;
     }
     used
-}
-
-/// How the entries are coded: names, and numbers that tell things apart, by a table; directions on the octahedron; all
-/// others uniformly, integers that fit exactly. `None` if a table would be too long for names.
-fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOptions) -> Option<Coding> {
-    let Some(scalar) = attribute.values.component_type() else { return table(attribute, used) };
-    let is_label = matches!(attribute.semantic, Semantic::Material | Semantic::Group | Semantic::Object)
-        || attribute.domain == Domain::Triangle && scalar.is_integer();
-    if is_label && let Some(table) = table(attribute, used) {
-        return Some(table);
-    }
-    let bits = match attribute.semantic {
-        Semantic::Normal => options.normal_bits,
-        Semantic::TexCoord(_) => options.texcoord_bits,
-        Semantic::Color(_) => options.color_bits,
-        _ => options.generic_bits,
-    };
-    let n = attribute.num_components;
-    let number = |entry: u32, k: usize| attribute.values.number(entry as usize * n + k).unwrap_or(0.0);
-    let mut low = vec![f64::INFINITY; n];
-    let mut high = vec![f64::NEG_INFINITY; n];
-    for &entry in used {
-        for k in 0..n {
-            low[k] = low[k].min(number(entry, k));
-            high[k] = high[k].max(number(entry, k));
-        }
-    }
-    if used.is_empty() {
-        (low, high) = (vec![0.0; n], vec![0.0; n]);
-    }
-    let range = low.iter().zip(&high).map(|(l, h)| h - l).fold(0.0, f64::max);
-    let steps = f64::from((1_u32 << bits) - 1);
-    if scalar.is_integer() && range <= steps {
-        let bits = 64 - (range as u64).leading_zeros();
-        return Some(Coding::Uniform { bits: bits.max(1), minimum: low, step: 1.0 });
-    }
-    if attribute.semantic == Semantic::Normal && n == 3 && are_directions(attribute, used, scalar) {
-        return Some(Coding::Octahedral { bits });
-    }
-    // Fractions of 8 bits that a text file holds come back as they were.
-    let is_fraction = matches!(attribute.semantic, Semantic::Color(_)) && !scalar.is_integer();
-    if is_fraction && low.iter().all(|&l| l >= 0.0) && high.iter().all(|&h| h <= 1.0) {
-        return Some(Coding::Uniform { bits, minimum: vec![0.0; n], step: 1.0 / steps });
-    }
-    // A range beyond double precision is quantized in halves.
-    let step = if range.is_finite() { range / steps } else { f64::MAX / steps * 2.0 };
-    let step = if step > 0.0 { step } else { 1.0 };
-    Some(Coding::Uniform { bits, minimum: low.iter().map(|l| l + 0.0).collect(), step })
-}
-
-/// Whether vectors have unit length, to a tenth.
-fn are_directions(attribute: &Attribute, used: &[u32], scalar: ComponentType) -> bool {
-    if scalar.is_integer() && !attribute.is_normalized {
-        return false;
-    }
-    used.iter().all(|&entry| {
-        let squared = (0..3).filter_map(|k| attribute.number(entry as usize, k)).map(|x| x * x).sum::<f64>();
-        (0.81..=1.21).contains(&squared)
-    })
-}
-
-/// The different entries in the order of their first use; `None` if there are too many.
-fn table(attribute: &Attribute, used: &[u32]) -> Option<Coding> {
-    let n = attribute.num_components;
-    let mut entries = attribute.values.emptied();
-    let mut seen = HashMap::new();
-    for &entry in used {
-        let key = key_of(attribute, entry);
-        if seen.insert(key, ()).is_none() {
-            let first = entry as usize * n;
-            match (&attribute.values, &mut entries) {
-                (Values::Names(names), Values::Names(out)) => out.push(names[first].clone()),
-                (values, out) => {
-                    (first..first + n).filter_map(|k| values.bits(k)).for_each(|b| out.push_bits(b))
-                }
-            }
-        }
-    }
-    if entries.is_empty() {
-        // Nothing has a value, but a table has entries.
-        match &mut entries {
-            Values::Names(names) => names.push(String::new()),
-            numbers => (0..n).for_each(|_| numbers.push_bits(0)),
-        }
-    }
-    (entries.len() / n <= MAX_TABLE).then_some(Coding::Table { entries })
-}
-
-/// What distinguishes entries of a table: a name, or the bits of numbers.
-#[derive(PartialEq, Eq, Hash)]
-enum Key<'a> {
-    Name(&'a str),
-    Bits(Vec<u64>),
-}
-
-fn key_of(attribute: &Attribute, entry: u32) -> Key<'_> {
-    let (entry, n) = (entry as usize, attribute.num_components);
-    match &attribute.values {
-        Values::Names(names) => Key::Name(&names[entry]),
-        values => Key::Bits((entry * n..entry * n + n).filter_map(|k| values.bits(k)).collect()),
-    }
 }
 
 /// The channels of the entries that are used.

@@ -1,5 +1,6 @@
 //! From a mesh to a stream: down the levels first, then coarse to fine into the bytes.
 
+mod attribute_coding;
 mod attribute_writer;
 mod attributes;
 mod canonical_order;
@@ -9,6 +10,7 @@ mod earnings;
 mod frame;
 mod grid_surface;
 mod isolated_and_degenerate;
+mod losses;
 mod number_format;
 mod numbering;
 mod options;
@@ -16,6 +18,7 @@ mod pass_writer;
 mod patch_search;
 mod payload;
 pub(crate) mod quantize;
+mod rounding;
 mod schedule;
 mod stitching;
 mod tie_break;
@@ -82,7 +85,8 @@ pub fn encode_with_attributes(
     let bytes = smallest_stream(surface, original, features.as_ref(), progress);
     // The encoder's own bytes always hold a header.
     let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(mesh.num_vertices()))?;
-    Ok(Encoded { bytes, info, repair: on_grid.repair, values_dropped: quantized.values_dropped })
+    let losses = losses::beside_positions(&on_grid.repair, &quantized, options);
+    Ok(Encoded { bytes, info, repair: on_grid.repair, losses })
 }
 
 /// The smallest stream of all hierarchies and schedules that the options try.

@@ -4,6 +4,7 @@ use crate::bitstream::profile::Profile;
 use crate::decoder::StreamInfo;
 use crate::descriptors::{Descriptor, FeatureChoice, Window};
 use crate::error::EncodeError;
+use crate::losses::Losses;
 use crate::mesh::repair::RepairReport;
 use crate::mesh::{Attributes, TriMesh};
 use crate::simplification::hierarchy::MAX_LEVELS;
@@ -198,8 +199,8 @@ pub struct Encoded {
     pub info: StreamInfo,
     /// What had to be cut or dropped.
     pub repair: RepairReport,
-    /// Entries of attributes that are not finite: elements with one count as having no value.
-    pub values_dropped: usize,
+    /// What the stream does not give back.
+    pub losses: Losses,
 }
 
 /// How far an encoder is.

@@ -31,7 +31,8 @@ impl ExactValues<'_> {
             .map(|((attribute, quantized), elements)| {
                 let of = sources.of(quantized.declaration.domain);
                 let mut part = Part { attribute, quantized, elements, of, scales: None };
-                part.scales = self.is_lossless.then(|| part.scales()).flatten();
+                let is_exact = self.is_lossless || quantized.must_be_exact;
+                part.scales = is_exact.then(|| part.scales()).flatten();
                 part
             })
             .collect();

@@ -30,6 +30,7 @@ mod mesh_file;
 mod obj;
 mod ply;
 mod read;
+mod read_losses;
 #[cfg(feature = "gltf")]
 mod scene;
 mod source;

@@ -9,7 +9,7 @@
 //! let mut losses = Losses::default();
 //! losses.push(Loss::new(Stage::Writing, LossKind::Dropped, "nx ny nz"));
 //! losses.push(Loss::new(Stage::Encoding, LossKind::PositionsRounded, "").at_most(0.002).in_edges(0.01));
-//! assert_eq!(losses.to_string(), "not kept: nx ny nz\npositions rounded, by at most 0.002, 0.01 of an edge");
+//! assert_eq!(losses.to_string(), "left out: nx ny nz\npositions rounded, by at most 0.002, 0.01 of an edge");
 //! ```
 
 mod sentence;
@@ -152,6 +152,8 @@ pub struct Loss {
     pub largest_error_in_edges: Option<f64>,
     /// What to do to keep it; empty where nothing helps.
     pub remedy: String,
+    /// Whether an option asks for just this.
+    pub is_requested: bool,
 }
 
 impl Loss {
@@ -166,6 +168,7 @@ impl Loss {
             largest_error: None,
             largest_error_in_edges: None,
             remedy: String::new(),
+            is_requested: false,
         }
     }
 
@@ -191,6 +194,17 @@ impl Loss {
     #[must_use]
     pub fn in_edges(self, largest_error_in_edges: f64) -> Self {
         Self { largest_error_in_edges: Some(largest_error_in_edges), ..self }
+    }
+
+    /// As an option asks for it.
+    #[must_use]
+    pub fn requested(self) -> Self {
+        Self { is_requested: true, ..self }
+    }
+
+    /// Whether it is what the options ask for, or of a [kind](LossKind::is_usual) that is usual.
+    pub fn is_usual(&self) -> bool {
+        self.is_requested || self.kind.is_usual()
     }
 
     /// With what to do about it.
@@ -219,9 +233,9 @@ impl Losses {
         later.list.into_iter().for_each(|loss| self.push(loss));
     }
 
-    /// Those that somebody should be told of even if all went as usual; see [`LossKind::is_usual`].
+    /// Those that somebody should be told of even if all went as usual; see [`Loss::is_usual`].
     pub fn unusual(&self) -> impl Iterator<Item = &Loss> {
-        self.list.iter().filter(|loss| !loss.kind.is_usual())
+        self.list.iter().filter(|loss| !loss.is_usual())
     }
 
     /// All of them.

@@ -35,29 +35,41 @@ impl Loss {
     fn what(&self) -> String {
         let subject = &self.subject;
         match self.kind {
-            LossKind::Dropped if self.count.is_none() => format!("not kept: {subject}"),
-            LossKind::Dropped => format!("{}{subject} left out", self.counts()),
-            LossKind::PositionsRounded => format!("{}positions rounded{}", self.counts(), to(subject)),
-            LossKind::TrianglesCollapsed => format!("{}triangles collapsed", self.counts()),
-            LossKind::TrianglesTurned => format!("{}triangles turned over", self.counts()),
-            LossKind::ValuesRounded => format!("{}values of {subject} rounded", self.counts()),
-            LossKind::IdentifiersChanged => format!("{}identifiers of {subject} changed", self.counts()),
-            LossKind::ValuesConverted => format!("{}values of {subject} converted", self.counts()),
-            LossKind::ValuesFilled => format!("{subject}: {}elements without value have one", self.counts()),
-            LossKind::NamesChanged => format!("{}names of {subject} changed", self.counts()),
-            LossKind::PolygonsTriangulated => format!("{}polygons cut into triangles", self.counts()),
-            LossKind::VerticesJoined => format!("{}vertices joined with others", self.counts()),
-            LossKind::VerticesSplit => format!("{}vertices repeated", self.counts()),
+            LossKind::Dropped => format!("left out: {subject}{}", self.count_behind()),
+            LossKind::PositionsRounded => format!("{} rounded{}", self.counted("position"), to(subject)),
+            LossKind::TrianglesCollapsed => format!("{} collapsed", self.counted("triangle")),
+            LossKind::TrianglesTurned => format!("{} turned over", self.counted("triangle")),
+            LossKind::ValuesRounded => format!("{subject}: {} rounded", self.counted("value")),
+            LossKind::IdentifiersChanged => format!("{subject}: {} changed", self.counted("identifier")),
+            LossKind::ValuesConverted => format!("{subject}: {} converted", self.counted("value")),
+            LossKind::ValuesFilled => {
+                format!("{subject}: {} made up where there was none", self.counted("value"))
+            }
+            LossKind::NamesChanged => format!("{subject}: {} changed", self.counted("name")),
+            LossKind::PolygonsTriangulated => format!("{} cut into triangles", self.counted("polygon")),
+            LossKind::VerticesJoined => format!("{} joined with others", self.counted("vertex")),
+            LossKind::VerticesSplit => format!("{} repeated", self.counted("vertex")),
             LossKind::Reordered => "vertices and triangles in another order".to_owned(),
             LossKind::Coarser => format!("coarser than the whole stream{}", in_parentheses(subject)),
         }
     }
 
-    /// `12 `, `12 of 40 ` or nothing.
-    fn counts(&self) -> String {
+    /// `1 value`, `12 of 40 values`, or `values` if nobody counted them.
+    fn counted(&self, one: &str) -> String {
+        let many = if one == "vertex" { "vertices".to_owned() } else { format!("{one}s") };
         match (self.count, self.total) {
-            (Some(count), Some(total)) => format!("{count} of {total} "),
-            (Some(count), None) => format!("{count} "),
+            (Some(count), Some(total)) => format!("{count} of {total} {many}"),
+            (Some(1), None) => format!("1 {one}"),
+            (Some(count), None) => format!("{count} {many}"),
+            (None, _) => many,
+        }
+    }
+
+    /// ` (12)`, ` (12 of 40)` or nothing.
+    fn count_behind(&self) -> String {
+        match (self.count, self.total) {
+            (Some(count), Some(total)) => format!(" ({count} of {total})"),
+            (Some(count), None) => format!(" ({count})"),
             (None, _) => String::new(),
         }
     }
@@ -94,7 +106,7 @@ mod tests {
     fn sentences_say_what_how_many_and_how_much() {
         let loss = |kind, subject: &str| Loss::new(Stage::Encoding, kind, subject);
         for (loss, sentence) in [
-            (loss(LossKind::Dropped, "isolated vertices").count(3), "3 isolated vertices left out"),
+            (loss(LossKind::Dropped, "isolated vertices").count(3), "left out: isolated vertices (3)"),
             (
                 loss(LossKind::TrianglesCollapsed, "").count(12).of(40).remedy("`-q 16` keeps them"),
                 "12 of 40 triangles collapsed: `-q 16` keeps them",
@@ -107,7 +119,7 @@ mod tests {
                 loss(LossKind::PositionsRounded, "float32").at_most(0.25),
                 "positions rounded to float32, by at most 0.25",
             ),
-            (loss(LossKind::ValuesRounded, "vn").at_most(12.34), "values of vn rounded, by at most 12"),
+            (loss(LossKind::ValuesRounded, "vn").at_most(12.34), "vn: values rounded, by at most 12"),
             (loss(LossKind::Coarser, "level 3 of 9"), "coarser than the whole stream (level 3 of 9)"),
         ] {
             assert_eq!(loss.to_string(), sentence);

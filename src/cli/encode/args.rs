@@ -1,6 +1,7 @@
 //! What may be typed after `lwc encode`.
 
 use crate::cli::args::{Reading, Scale};
+use crate::cli::losses::Strictness;
 use crate::cli::output::{Destination, with_ending, without_mesh_ending};
 use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -118,6 +119,8 @@ pub struct Encode {
     /// Decode the stream and compare it with the mesh before it is written.
     #[arg(long)]
     pub verify: bool,
+    #[command(flatten)]
+    pub strictness: Strictness,
     /// Print one JSON object instead of the summary (to standard error with `-o -`).
     #[arg(long)]
     pub json: bool,

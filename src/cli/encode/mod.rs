@@ -8,6 +8,7 @@ use super::bar::Part;
 use super::exit::Failure;
 use super::input::{read_for_stream, read_terrain};
 use super::input_file::{self, holds_stream};
+use super::losses;
 use super::output::Destination;
 use super::quantity::counted;
 use super::ui::Ui;
@@ -16,8 +17,9 @@ use anyhow::Context;
 use args::Encode;
 use grid_loss::GridLoss;
 use lwc::io::{Format, MeshFile};
+use lwc::losses::{Loss, LossKind, Losses, Stage};
 use lwc::mesh::{Attribute, Attributes, Semantic};
-use lwc::{EncodeOptions, Encoded, RepairReport};
+use lwc::{EncodeOptions, Encoded};
 use report::Report;
 use std::io;
 use std::path::Path;
@@ -38,7 +40,10 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         Some(options) => read_terrain(&args.input, &options, &args.reading, reading, ui)?,
         None => read_for_stream(&args.input, args.merge, &args.reading, reading, ui)?,
     };
-    let left_out = if args.no_attributes { drop_attributes(&mut file) } else { Vec::new() };
+    let mut losses = file.report.losses();
+    if args.no_attributes {
+        losses.append(drop_attributes(&mut file));
+    }
     let read_seconds = start.elapsed().as_secs_f64();
 
     let name = args.input.display().to_string();
@@ -50,9 +55,10 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         warn_of_what_is_not_finite(&name, &file.attributes, ui);
     }
 
+    let mut verified = None;
     if args.verify {
         let start = Instant::now();
-        verify::verify(&file, &options, &encoded, verifying).with_context(|| name.clone())?;
+        verified = Some(verify::verify(&file, &options, &encoded, verifying).with_context(|| name.clone())?);
         ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
     }
     let grid = GridLoss::new(&file.mesh, &encoded.info, args.lossless);
@@ -60,9 +66,12 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     if let Some(warning) = grid.as_ref().and_then(|grid| grid.warning(&file.mesh)) {
         ui.warn(&name, &warning);
     }
+    losses.append(encoded.losses.clone());
+    args.strictness.check(&losses).with_context(|| name.clone())?;
     destination.write(|out| out.write_all(&encoded.bytes))?;
     let (file, encoded) = (&file, &encoded);
-    let report = Report { args, file, left_out, encoded, grid, destination, read_seconds, encode_seconds };
+    let report =
+        Report { args, file, losses, verified, encoded, grid, destination, read_seconds, encode_seconds };
     report.print(ui)
 }
 
@@ -116,11 +125,14 @@ fn encode(file: &MeshFile, args: &Encode, part: Part) -> Result<(Encoded, Encode
     Ok(best)
 }
 
-/// Takes the attributes out of a file; returns their names.
-fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
+/// Takes the attributes out of a file, and says so.
+fn drop_attributes(file: &mut MeshFile) -> Losses {
     let attributes = std::mem::take(&mut file.attributes);
-    let names = attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
-    names.chain(attributes.material_libraries.first().map(|_| "mtllib".to_owned())).collect()
+    let names = attributes.list.iter().map(|attribute| attribute.name.clone());
+    let libraries = attributes.material_libraries.first().map(|_| "mtllib".to_owned());
+    let materials = attributes.gltf_materials.map(|_| "materials".to_owned());
+    let dropped = |name| Loss::new(Stage::Encoding, LossKind::Dropped, name).requested();
+    names.chain(libraries).chain(materials).map(dropped).collect()
 }
 
 /// With `--lossless` even these are kept, and other programs may choke on them.
@@ -150,19 +162,8 @@ fn warn_about(name: &str, encoded: &Encoded, ui: &Ui) {
             "in one piece: there is nothing to show before the last byte; `--levels 99` keeps levels",
         );
     }
-    let RepairReport { degenerate_triangles, isolated_vertices, repeated_vertices } = encoded.repair;
-    if encoded.values_dropped > 0 {
-        let values = counted(encoded.values_dropped, "value", "values");
-        ui.warn(name, &format!("{values} of attributes left out: not finite"));
-    }
-    if degenerate_triangles > 0 {
-        let triangles = counted(degenerate_triangles, "degenerate triangle", "degenerate triangles");
-        ui.warn(name, &format!("{triangles} dropped"));
-    }
-    if isolated_vertices > 0 {
-        let vertices = counted(isolated_vertices, "vertex", "vertices");
-        ui.warn(name, &format!("{vertices} without triangles dropped"));
-    }
+    losses::warn(name, &encoded.losses, ui);
+    let repeated_vertices = encoded.repair.repeated_vertices;
     if repeated_vertices > 0 {
         let vertices = counted(repeated_vertices, "vertex", "vertices");
         ui.detail(name, &format!("{vertices} repeated to cut the mesh where it is not manifold"));

@@ -2,12 +2,14 @@
 
 use super::args::Encode;
 use super::grid_loss::GridLoss;
+use crate::cli::losses;
 use crate::cli::output::{Destination, print_json};
 use crate::cli::passes;
 use crate::cli::quantity::counted;
 use crate::cli::ui::Ui;
 use lwc::Encoded;
 use lwc::io::MeshFile;
+use lwc::losses::Losses;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
@@ -15,8 +17,10 @@ use std::io::{self, Write};
 pub struct Report<'a> {
     pub args: &'a Encode,
     pub file: &'a MeshFile,
-    /// Attributes that were not wanted.
-    pub left_out: Vec<String>,
+    /// From the file to the stream.
+    pub losses: Losses,
+    /// What was verified, if anything.
+    pub verified: Option<String>,
     pub encoded: &'a Encoded,
     /// Unless coordinates are kept bit for bit.
     pub grid: Option<GridLoss>,
@@ -34,6 +38,9 @@ impl Report<'_> {
             print_json(out, &self.to_json())?;
         } else if self.destination != Destination::Stdout || ui.is_verbose() {
             ui.say(&self.summary());
+            if let Some(usual) = losses::usual(&self.losses) {
+                ui.say(&usual);
+            }
             if ui.is_verbose() {
                 passes::print(io::stderr(), &self.encoded.info, self.num_bytes())?;
             }
@@ -54,7 +61,7 @@ impl Report<'_> {
         Some(self.num_bytes() as f64 / self.input_bytes()? as f64)
     }
 
-    /// Two lines.
+    /// Two lines, or three.
     fn summary(&self) -> String {
         let (info, bytes, repair) = (&self.encoded.info, self.num_bytes(), &self.encoded.repair);
         let finest = info.passes().last();
@@ -74,13 +81,13 @@ impl Report<'_> {
             passes::bits_per_vertex(bytes, info),
             ratio.unwrap_or_default(),
             self.read_seconds + self.encode_seconds,
-            if self.args.verify { ", verified" } else { "" },
+            self.verified.as_ref().map_or(String::new(), |what| format!("\nverified: {what}")),
         )
     }
 
     fn to_json(&self) -> Value {
         let (args, info, mesh) = (self.args, &self.encoded.info, &self.file.mesh);
-        let (read, repair) = (&self.file.report, &self.encoded.repair);
+        let repair = &self.encoded.repair;
         let finest = info.passes().last();
         let output = match &self.destination {
             Destination::Stdout => None,
@@ -113,16 +120,9 @@ impl Report<'_> {
             "steps_per_edge": args.steps_per_edge,
             "read_seconds": self.read_seconds,
             "encode_seconds": self.encode_seconds,
-            "verified": args.verify,
-            "polygons_triangulated": read.polygons_triangulated,
-            "faces_skipped": read.faces_skipped,
-            "corners_welded": read.corners_welded,
-            "points_left_out": read.points_left_out,
-            "points_withheld": read.points_withheld,
-            "ignored": self.file.report.ignored.iter().chain(&self.left_out).collect::<Vec<_>>(),
+            "verified": self.verified,
+            "losses": losses::to_json(&self.losses),
             "attributes": passes::attributes_to_json(info, &[]),
-            "degenerate_triangles": repair.degenerate_triangles,
-            "isolated_vertices": repair.isolated_vertices,
             "repeated_vertices": repair.repeated_vertices,
             "passes": passes::to_json(info, self.num_bytes()),
             "trailing": passes::trailing_to_json(info, self.num_bytes()),

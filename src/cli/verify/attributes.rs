@@ -72,6 +72,15 @@ fn places(of: impl Iterator<Item = usize>, triangles: &[[u32; 3]], cells: &[[i32
     places
 }
 
+/// Whether all numbers are whole and none is known to measure something: they come back exactly.
+fn names_things(attribute: &Attribute) -> bool {
+    let measures = matches!(attribute.name.as_str(), "intensity" | "nir");
+    let is_other =
+        matches!(attribute.semantic, Semantic::Normal | Semantic::TexCoord(_) | Semantic::Color(_));
+    let mut numbers = (0..attribute.values.len()).filter_map(|k| attribute.values.number(k));
+    !(attribute.is_normalized || measures || is_other) && numbers.all(|x| x.fract() == 0.0)
+}
+
 /// An attribute before and after.
 struct Pair<'a> {
     mesh: &'a TriMesh,
@@ -122,7 +131,8 @@ impl<'a> Pair<'a> {
         let largest = range.iter().flatten().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
         let steps = f64::from((1_u32 << bits) - 1);
         let is_integer = wanted.values.component_type().is_some_and(lwc::mesh::ComponentType::is_integer);
-        let is_exact = is_integer && widest <= steps || wanted.values.names().is_some();
+        let is_exact =
+            is_integer && widest <= steps || wanted.values.names().is_some() || names_things(wanted);
         let step = (widest / steps).max(if is_integer { 1.0 } else { 0.0 });
         let step = if matches!(wanted.semantic, Semantic::Color(_)) { step.max(1.0 / steps) } else { step };
         let tolerance = if is_exact { 0.0 } else { 0.5 * step * 1.001 + largest * 1e-6 };

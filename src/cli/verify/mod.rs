@@ -20,6 +20,8 @@ const PIECES: [usize; 6] = [1, 3, 17, 997, 65_521, 7];
 /// grid cells, and the vertices, each with all its triangles; with the options for it coordinates bit for bit
 /// and the order.
 ///
+/// Returns in words what was compared.
+///
 /// # Errors
 /// If anything differs.
 pub fn verify(
@@ -27,7 +29,7 @@ pub fn verify(
     options: &EncodeOptions,
     encoded: &Encoded,
     part: Part,
-) -> Result<(), Failure> {
+) -> Result<String, Failure> {
     let (mesh, attributes) = (&file.mesh, &file.attributes);
     let check = || {
         let decoder = decode(encoded, part.between(0.0, 0.5))?;
@@ -39,6 +41,9 @@ pub fn verify(
         part.set(0.8);
         let cells: Vec<Cell> = mesh.positions().iter().map(|&p| expected.cell(p)).collect();
         attributes::compare(mesh, attributes, &cells, options, &decoder)?;
+        if found.scene != attributes.scene || found.gltf_materials != attributes.gltf_materials {
+            return Err("the scene or its materials differ".to_owned());
+        }
         part.set(0.9);
         if options.lossless {
             exact::compare((mesh, attributes), (&decoded, &found), options)?;
@@ -46,7 +51,22 @@ pub fn verify(
         part.set(1.0);
         Ok(())
     };
-    check().map_err(Failure::Verification)
+    check().map_err(Failure::Verification)?;
+    Ok(in_words(!attributes.list.is_empty(), options))
+}
+
+/// `all triangles, positions on the grid, attributes to the step of their bits, order`.
+fn in_words(has_attributes: bool, options: &EncodeOptions) -> String {
+    let positions = if options.lossless { "positions bit for bit" } else { "positions on the grid" };
+    let values =
+        if options.lossless { "attributes bit for bit" } else { "attributes to the step of their bits" };
+    let all = [
+        Some("all triangles"),
+        Some(positions),
+        has_attributes.then_some(values),
+        options.keep_order.then_some("order"),
+    ];
+    all.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 fn decode(encoded: &Encoded, part: Part) -> Result<Decoder, String> {
@@ -274,13 +294,13 @@ mod tests {
         TriMesh::new(positions, triangles).unwrap()
     }
 
-    fn verify(mesh: &TriMesh, quantization_bits: u32, encoded: &Encoded) -> Result<(), Failure> {
+    fn verify(mesh: &TriMesh, quantization_bits: u32, encoded: &Encoded) -> Result<String, Failure> {
         let mut options = EncodeOptions::default();
         options.quantization_bits = quantization_bits;
         verify_with(mesh, &options, encoded)
     }
 
-    fn verify_with(mesh: &TriMesh, options: &EncodeOptions, encoded: &Encoded) -> Result<(), Failure> {
+    fn verify_with(mesh: &TriMesh, options: &EncodeOptions, encoded: &Encoded) -> Result<String, Failure> {
         let mut file = MeshFile::default();
         file.mesh = mesh.clone();
         let bar = Bar::new(&Screen::default(), false);

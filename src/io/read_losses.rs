@@ -1,0 +1,49 @@
+//! The report of a reader as a list of losses.
+
+use super::mesh_file::ReadReport;
+use crate::losses::{Loss, LossKind, Losses, Stage};
+
+impl ReadReport {
+    /// What the mesh lacks of its file.
+    pub fn losses(&self) -> Losses {
+        let mut losses = Losses::default();
+        let mut count = |kind: LossKind, what: &str, count: usize| {
+            if count > 0 {
+                losses.push(loss(kind, what).count(count));
+            }
+        };
+        count(LossKind::PolygonsTriangulated, "", self.polygons_triangulated);
+        count(LossKind::Dropped, "faces of fewer than three corners", self.faces_skipped);
+        count(LossKind::Dropped, "points flagged as withheld", self.points_withheld);
+        count(LossKind::Dropped, "points above others, or not wanted", self.points_left_out);
+        count(LossKind::VerticesJoined, "", self.corners_welded);
+        self.ignored.iter().for_each(|name| losses.push(loss(LossKind::Dropped, name)));
+        losses
+    }
+}
+
+fn loss(kind: LossKind, subject: &str) -> Loss {
+    Loss::new(Stage::Reading, kind, subject)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_field_of_a_report_is_a_loss() {
+        assert!(ReadReport::default().losses().is_empty());
+        let report = ReadReport {
+            polygons_triangulated: 1,
+            faces_skipped: 2,
+            corners_welded: 3,
+            points_left_out: 4,
+            points_withheld: 5,
+            ignored: vec!["l".into(), "p".into()],
+        };
+        assert_eq!(report.losses().len(), 7);
+        let sentence = report.losses().to_string();
+        assert!(sentence.contains("left out: faces of fewer than three corners (2)"), "{sentence}");
+        assert!(sentence.contains("left out: p"), "{sentence}");
+    }
+}
