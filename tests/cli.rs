@@ -462,8 +462,11 @@ fn nothing_is_dropped_if_nobody_wants_that() {
 }
 
 fn left_out(report: &serde_json::Value) -> Vec<&str> {
-    let losses = report["losses"].as_array().unwrap().iter();
-    losses.filter(|loss| loss["kind"] == "dropped").map(|loss| loss["subject"].as_str().unwrap()).collect()
+    let losses = report["losses"].as_array().expect("a list").iter();
+    losses
+        .filter(|loss| loss["kind"] == "dropped")
+        .map(|loss| loss["subject"].as_str().expect("a text"))
+        .collect()
 }
 
 #[test]

@@ -105,6 +105,48 @@ typedef enum LwcComponentType {
   LWC_COMPONENT_TYPE_NAMES = 8,
 } LwcComponentType;
 
+// Where something is lost.
+typedef enum LwcLossStage {
+  LWC_LOSS_STAGE_READING = 0,
+  LWC_LOSS_STAGE_ENCODING = 1,
+  LWC_LOSS_STAGE_DECODING = 2,
+  LWC_LOSS_STAGE_WRITING = 3,
+} LwcLossStage;
+
+// What happens to what is lost.
+typedef enum LwcLossKind {
+  // Left out: the subject says what.
+  LWC_LOSS_KIND_DROPPED = 0,
+  // Positions are rounded: a distance in model units.
+  LWC_LOSS_KIND_POSITIONS_ROUNDED = 1,
+  // Triangles have no area any more.
+  LWC_LOSS_KIND_TRIANGLES_COLLAPSED = 2,
+  // Triangles face the other way.
+  LWC_LOSS_KIND_TRIANGLES_TURNED = 3,
+  // Values of an attribute are rounded; of directions the error is an angle in radians.
+  LWC_LOSS_KIND_VALUES_ROUNDED = 4,
+  // Integers that name things differ.
+  LWC_LOSS_KIND_IDENTIFIERS_CHANGED = 5,
+  // Values are of another range or colour space.
+  LWC_LOSS_KIND_VALUES_CONVERTED = 6,
+  // Elements that had no value have one.
+  LWC_LOSS_KIND_VALUES_FILLED = 7,
+  // Names are written otherwise.
+  LWC_LOSS_KIND_NAMES_CHANGED = 8,
+  // Polygons are cut into triangles.
+  LWC_LOSS_KIND_POLYGONS_TRIANGULATED = 9,
+  // Vertices at one place with equal values are one.
+  LWC_LOSS_KIND_VERTICES_JOINED = 10,
+  // Vertices are repeated.
+  LWC_LOSS_KIND_VERTICES_SPLIT = 11,
+  // Vertices and triangles come in another order.
+  LWC_LOSS_KIND_REORDERED = 12,
+  // The mesh is coarser than the finest one.
+  LWC_LOSS_KIND_COARSER = 13,
+  // Something that this header does not know; the message says what.
+  LWC_LOSS_KIND_OTHER = 14,
+} LwcLossKind;
+
 // Decodes a stream as it arrives.
 typedef struct LwcDecoder LwcDecoder;
 
@@ -223,6 +265,26 @@ typedef struct LwcAttribute {
   // Entries of the table.
   size_t num_entries;
 } LwcAttribute;
+
+// One thing that is lost.
+typedef struct LwcLoss {
+  // An LwcLossStage.
+  uint32_t stage;
+  // An LwcLossKind.
+  uint32_t kind;
+  // Elements concerned; -1 if they were not counted.
+  int64_t count;
+  // Of how many; -1 if that is not known.
+  int64_t total;
+  // The largest error; NaN if there is none.
+  double largest_error;
+  // Of positions: the largest error of a vertex divided by the mean length of its edges; else NaN.
+  double largest_error_in_edges;
+  // What, UTF-8: the name of an attribute, or a few words; may be empty. Valid as long as its mesh or stream.
+  const char *subject;
+  // A sentence, UTF-8. Valid as long as its mesh or stream.
+  const char *message;
+} LwcLoss;
 
 #ifdef __cplusplus
 extern "C" {
@@ -466,6 +528,32 @@ const char *lwc_mesh_attribute_name(const struct LwcMesh *mesh,
 
 // Says more about the last call of this thread that failed; valid until the next one that does.
 const char *lwc_last_error(void);
+
+// Number of things that a stream does not give back of its mesh; 0 for null.
+//
+// # Safety
+// `encoded` was handed out by this library and has not been freed.
+size_t lwc_encoded_num_losses(const struct LwcEncoded *encoded);
+
+// Loss `index` of a stream, counted from 0.
+//
+// # Safety
+// `encoded` was handed out by this library and has not been freed; `loss` can be written to.
+enum LwcStatus lwc_encoded_loss(const struct LwcEncoded *encoded,
+                                size_t index,
+                                struct LwcLoss *loss);
+
+// Number of things that a decoded mesh lacks of its stream; 0 for null, and for a mesh that was not decoded.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed.
+size_t lwc_mesh_num_losses(const struct LwcMesh *mesh);
+
+// Loss `index` of a decoded mesh, counted from 0.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `loss` can be written to.
+enum LwcStatus lwc_mesh_loss(const struct LwcMesh *mesh, size_t index, struct LwcLoss *loss);
 
 // All levels, the limits of the Rust library.
 struct LwcDecodeOptions lwc_decode_options_default(void);

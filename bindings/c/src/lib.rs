@@ -7,6 +7,7 @@
 
 mod attributes;
 mod error;
+mod losses;
 mod options;
 
 pub use attributes::{
@@ -15,10 +16,15 @@ pub use attributes::{
     lwc_mesh_find_attribute, lwc_mesh_num_attributes,
 };
 pub use error::{Status, lwc_last_error};
+pub use losses::{
+    Loss, LossKind, LossStage, lwc_encoded_loss, lwc_encoded_num_losses, lwc_mesh_loss, lwc_mesh_num_losses,
+};
 pub use options::{DecodeOptions, EncodeOptions, lwc_decode_options_default, lwc_encode_options_default};
 
 use attributes::Texts;
 use error::guard;
+use losses::Listed;
+use lwc::losses::Losses;
 use lwc::mesh::Attributes;
 use lwc::{PassKind, PositionUpdater, TriMesh};
 use std::slice;
@@ -29,18 +35,23 @@ pub struct Mesh {
     attributes: Attributes,
     /// One for each attribute.
     texts: Vec<Texts>,
+    /// What it lacks of its stream.
+    losses: Listed,
 }
 
 impl Mesh {
     /// As a pointer for C.
-    fn hand_out(mesh: TriMesh, attributes: Attributes) -> *mut Self {
+    fn hand_out(mesh: TriMesh, attributes: Attributes, losses: Losses) -> *mut Self {
         let texts = Texts::of(&attributes);
-        Box::into_raw(Box::new(Self { mesh, attributes, texts }))
+        Box::into_raw(Box::new(Self { mesh, attributes, texts, losses: Listed::new(losses) }))
     }
 }
 
 /// A stream that owns its bytes.
-pub struct Encoded(lwc::Encoded);
+pub struct Encoded {
+    bytes: Vec<u8>,
+    losses: Listed,
+}
 
 /// Decodes a stream as it arrives.
 pub struct Decoder {
@@ -165,7 +176,7 @@ pub unsafe extern "C" fn lwc_mesh_new(
         let triangles = unsafe { elements::<[u32; 3]>(triangles.cast(), num_triangles) }?;
         let made = TriMesh::new(positions.to_vec(), triangles.to_vec()).map_err(error::mesh)?;
         // SAFETY: the caller's promise.
-        unsafe { put(mesh, Mesh::hand_out(made, Attributes::default())) }
+        unsafe { put(mesh, Mesh::hand_out(made, Attributes::default(), Losses::default())) }
     })
 }
 
@@ -238,8 +249,9 @@ pub unsafe extern "C" fn lwc_encode(
             unsafe { options.as_ref() }.map_or(Ok(lwc::EncodeOptions::default()), options::encode)?;
         let made = lwc::encode_with_attributes(&mesh.mesh, &mesh.attributes, &options, &|_| {});
         let made = made.map_err(error::encode)?;
+        let made = Encoded { bytes: made.bytes, losses: Listed::new(made.losses) };
         // SAFETY: the caller's promise.
-        unsafe { put(encoded, Box::into_raw(Box::new(Encoded(made)))) }
+        unsafe { put(encoded, Box::into_raw(Box::new(made))) }
     })
 }
 
@@ -260,7 +272,7 @@ pub unsafe extern "C" fn lwc_encoded_free(encoded: *mut Encoded) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lwc_encoded_bytes(encoded: *const Encoded) -> *const u8 {
     // SAFETY: the caller's promise.
-    unsafe { encoded.as_ref() }.map_or(std::ptr::null(), |encoded| encoded.0.bytes.as_ptr())
+    unsafe { encoded.as_ref() }.map_or(std::ptr::null(), |encoded| encoded.bytes.as_ptr())
 }
 
 /// Number of bytes; 0 for null.
@@ -270,7 +282,7 @@ pub unsafe extern "C" fn lwc_encoded_bytes(encoded: *const Encoded) -> *const u8
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lwc_encoded_num_bytes(encoded: *const Encoded) -> usize {
     // SAFETY: the caller's promise.
-    unsafe { encoded.as_ref() }.map_or(0, |encoded| encoded.0.bytes.len())
+    unsafe { encoded.as_ref() }.map_or(0, |encoded| encoded.bytes.len())
 }
 
 /// Decodes a stream, or the beginning of one, with its attributes in one call. `options` may be null for the defaults.
@@ -294,7 +306,7 @@ pub unsafe extern "C" fn lwc_decode(
         let (found, attributes) =
             decoder.preview_with_attributes().ok_or_else(|| error::decode(lwc::DecodeError::NoMesh))?;
         // SAFETY: the caller's promise.
-        unsafe { put(mesh, Mesh::hand_out(found, attributes)) }
+        unsafe { put(mesh, Mesh::hand_out(found, attributes, decoder.losses())) }
     })
 }
 
@@ -467,7 +479,7 @@ pub unsafe extern "C" fn lwc_decoder_mesh(decoder: *const Decoder, mesh: *mut *m
         let found = decoder.decoder.to_tri_mesh_with_attributes();
         let (found, attributes) = found.ok_or_else(|| error::decode(lwc::DecodeError::NoMesh))?;
         // SAFETY: the caller's promise.
-        unsafe { put(mesh, Mesh::hand_out(found, attributes)) }
+        unsafe { put(mesh, Mesh::hand_out(found, attributes, decoder.decoder.losses())) }
     })
 }
 

@@ -342,3 +342,41 @@ fn a_thread_that_computes_otherwise_is_told_so_and_streams_are_not_called_damage
         assert!(last_error().contains("floating-point"), "{}", last_error());
     }
 }
+
+#[test]
+fn losses_are_told_of_streams_and_meshes() {
+    let positions: Vec<f64> = (0..400).flat_map(|v| [f64::from(v / 20), f64::from(v % 20), 0.0]).collect();
+    let quad = |v: u32| [v, v + 1, v + 21, v, v + 21, v + 20];
+    let triangles: Vec<u32> = (0..379).filter(|v| v % 20 < 19).flat_map(quad).collect();
+    let (mut mesh, mut encoded, mut decoded, mut loss) = (null_mut(), null_mut(), null_mut(), None);
+    unsafe {
+        let made = lwc_mesh_new(positions.as_ptr(), 400, triangles.as_ptr(), triangles.len() / 3, &mut mesh);
+        assert_eq!((made, lwc_mesh_num_losses(mesh)), (Status::Ok, 0));
+        assert_eq!(lwc_encode(mesh, null(), &mut encoded), Status::Ok);
+        let mut found = |index| {
+            let mut one: Loss = std::mem::zeroed();
+            let status = lwc_encoded_loss(encoded, index, &mut one);
+            loss = (status == Status::Ok).then_some(one);
+            loss
+        };
+        let last = found(lwc_encoded_num_losses(encoded) - 1).unwrap();
+        assert_eq!((last.stage, last.kind), (LossStage::Encoding as u32, LossKind::Reordered as u32));
+        assert_eq!((last.count, last.largest_error.is_nan()), (-1, true));
+        let message = CStr::from_ptr(last.message).to_str().unwrap();
+        assert_eq!(message, "vertices and triangles in another order");
+        assert!(found(99).is_none() && last_error().contains("no loss 99"));
+        assert_eq!(lwc_encoded_num_losses(null()), 0);
+
+        let mut options = lwc_decode_options_default();
+        options.level = 0;
+        let (bytes, num_bytes) = (lwc_encoded_bytes(encoded), lwc_encoded_num_bytes(encoded));
+        assert_eq!(lwc_decode(bytes, num_bytes, &options, &mut decoded), Status::Ok);
+        assert_eq!(lwc_mesh_num_losses(decoded), 1);
+        let mut one: Loss = std::mem::zeroed();
+        assert_eq!(lwc_mesh_loss(decoded, 0, &mut one), Status::Ok);
+        assert_eq!((one.stage, one.kind), (LossStage::Decoding as u32, LossKind::Coarser as u32));
+        lwc_mesh_free(decoded);
+        lwc_encoded_free(encoded);
+        lwc_mesh_free(mesh);
+    }
+}

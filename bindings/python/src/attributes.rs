@@ -1,6 +1,8 @@
 //! Attributes: `lwc.Attribute` of Python and that of the library.
 
+use crate::losses;
 use lwc::TriMesh;
+use lwc::losses::Losses;
 use lwc::mesh::{Attribute, Attributes, Domain, NO_ENTRY, Semantic, Values};
 use numpy::{Element, IntoPyArray, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -129,9 +131,13 @@ fn table<'py, T: Element>(py: Python<'py>, values: Vec<T>, components: usize) ->
 }
 
 /// A `lwc.Mesh`.
-pub fn mesh<'py>(py: Python<'py>, (mesh, attributes): (TriMesh, Attributes)) -> PyResult<Bound<'py, PyAny>> {
+pub fn mesh<'py>(
+    py: Python<'py>,
+    (mesh, attributes, losses): (TriMesh, Attributes, Losses),
+) -> PyResult<Bound<'py, PyAny>> {
     let (positions, triangles) = mesh.into_parts();
     let vertices = positions.into_flattened().into_pyarray(py).call_method1("reshape", ((-1, 3),))?;
     let faces = triangles.into_flattened().into_pyarray(py).call_method1("reshape", ((-1, 3),))?;
-    class(py, "Mesh")?.call1((vertices, faces, write(py, attributes)?))
+    let losses = losses::list(py, &losses)?;
+    class(py, "Mesh")?.call1((vertices, faces, write(py, attributes)?, losses))
 }

@@ -44,6 +44,11 @@ pub fn encode_error(py: Python<'_>, error: lwc::EncodeError) -> PyErr {
     with_kind(py, EncodeError::new_err(error.to_string()), kind)
 }
 
+/// What would be lost though nothing may be.
+pub fn loss_error(py: Python<'_>, losses: &lwc::losses::Losses) -> PyErr {
+    with_kind(py, EncodeError::new_err(format!("something would be lost: {losses}")), "Lossy")
+}
+
 pub fn mesh_error(py: Python<'_>, error: lwc::MeshError) -> PyErr {
     use lwc::MeshError as E;
     let kind = match error {

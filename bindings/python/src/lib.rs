@@ -4,16 +4,18 @@ mod error;
 
 mod attributes;
 mod interrupt;
+mod losses;
 mod options;
 mod scene;
 
 use error::{DecodeError, EncodeError, decode_error, encode_error};
 use lwc::descriptors::Descriptor;
+use lwc::losses::Losses;
 use lwc::mesh::Attributes;
 use lwc::{StreamInfo, TriMesh};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::PyDict;
 
 #[pymodule]
 mod _lwc {
@@ -32,23 +34,29 @@ fn descriptors() -> Vec<&'static str> {
 }
 
 /// Encodes a mesh: vertices n × 3, faces m × 3 (counter-clockwise), attributes by name: lwc.Attribute, or arrays of
-/// values of vertices. Options are those of `lwc encode`; what is left out has its default. Returns the stream.
+/// values of vertices. Options are those of `lwc encode`; what is left out has its default. With strict any loss is an
+/// error. Returns the stream, bytes with a list of losses.
 #[pyfunction]
-#[pyo3(signature = (vertices, faces, *, attributes=None, **options))]
+#[pyo3(signature = (vertices, faces, *, attributes=None, strict=false, **options))]
 fn encode<'py>(
     py: Python<'py>,
     vertices: &Bound<'py, PyAny>,
     faces: &Bound<'py, PyAny>,
     attributes: Option<&Bound<'py, PyDict>>,
+    strict: bool,
     options: Option<&Bound<'py, PyDict>>,
-) -> PyResult<Bound<'py, PyBytes>> {
+) -> PyResult<Bound<'py, PyAny>> {
     let options = options::encode(py, options)?;
     let mesh = tri_mesh(py, vertices, faces)?;
     let attributes = attributes.map_or(Ok(Attributes::default()), |dict| attributes::read(py, dict))?;
     let encoded = interrupt::interruptible(py, move |go_on| {
         lwc::encode_with_attributes(&mesh, &attributes, &options, &|_| go_on.check())
     })?;
-    Ok(PyBytes::new(py, &encoded.map_err(|error| encode_error(py, error))?.bytes))
+    let encoded = encoded.map_err(|error| encode_error(py, error))?;
+    if strict && !encoded.losses.is_empty() {
+        return Err(error::loss_error(py, &encoded.losses));
+    }
+    losses::stream(py, &encoded.bytes, &encoded.losses)
 }
 
 /// Numbers of any type in any layout, as numpy would convert them.
@@ -123,11 +131,15 @@ fn decode_scene<'py>(
     )
 }
 
-fn decoded(py: Python<'_>, stream: &[u8], options: lwc::DecodeOptions) -> PyResult<(TriMesh, Attributes)> {
+/// A mesh, its attributes, and what it lacks of the stream.
+type Decoded = (TriMesh, Attributes, Losses);
+
+fn decoded(py: Python<'_>, stream: &[u8], options: lwc::DecodeOptions) -> PyResult<Decoded> {
     let decoded = py.detach(|| {
         let mut decoder = lwc::Decoder::with_options(options);
         decoder.push(stream)?;
-        decoder.preview_with_attributes().ok_or(lwc::DecodeError::NoMesh)
+        let (mesh, attributes) = decoder.preview_with_attributes().ok_or(lwc::DecodeError::NoMesh)?;
+        Ok((mesh, attributes, decoder.losses()))
     });
     decoded.map_err(|error| decode_error(py, error))
 }
@@ -261,12 +273,19 @@ impl Decoder {
         } else {
             self.0.mesh().map(|mesh| (mesh.to_tri_mesh(), Attributes::default()))
         };
+        let found = found.map(|(mesh, attributes)| (mesh, attributes, self.0.losses()));
         found.map(|found| attributes::mesh(py, found)).transpose()
     }
 
     /// Information about the stream; None before its table of passes has arrived.
     fn info<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         self.0.info().map(|info| info_dict(py, info)).transpose()
+    }
+
+    /// What the mesh lacks of what the stream holds, a list of lwc.Loss; empty once all has come.
+    #[getter]
+    fn losses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyList>> {
+        losses::list(py, &self.0.losses())
     }
 
     /// Checksum of the mesh, equal on every platform; None before the base mesh.

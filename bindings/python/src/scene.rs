@@ -3,7 +3,8 @@
 use crate::attributes::{class, mesh};
 use crate::error::scene_error;
 use lwc::TriMesh;
-use lwc::io::Scene;
+use lwc::io::{MeshFile, Scene};
+use lwc::losses::Losses;
 use lwc::mesh::{Attributes, IDENTITY, Instance};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -12,19 +13,20 @@ use pyo3::types::{PyBytes, PyList};
 /// A `lwc.Scene`. What is no scene is one mesh that is where its coordinates say.
 pub fn scene<'py>(
     py: Python<'py>,
-    (tri_mesh, mut attributes): (TriMesh, Attributes),
+    (tri_mesh, mut attributes, losses): (TriMesh, Attributes, Losses),
 ) -> PyResult<Bound<'py, PyAny>> {
     let unpacked = py.detach(|| Scene::unpack(&tri_mesh, &attributes));
     let unpacked = unpacked.map_err(|error| scene_error(py, error))?;
     let materials = attributes.gltf_materials.take().unwrap_or_default();
     let (meshes, instances): (Vec<_>, _) = match unpacked {
         Some(scene) => {
-            let meshes = scene.meshes.into_iter().map(|file| (file.mesh, file.attributes)).collect();
+            let one = |file: MeshFile| (file.mesh, file.attributes, losses.clone());
+            let meshes = scene.meshes.into_iter().map(one).collect();
             (meshes, scene.instances)
         }
         None => {
             let alone = Instance { mesh: 0, name: String::new(), transform: IDENTITY };
-            (vec![(tri_mesh, attributes)], vec![alone])
+            (vec![(tri_mesh, attributes, losses)], vec![alone])
         }
     };
     let meshes: PyResult<Vec<_>> = meshes.into_iter().map(|one| mesh(py, one)).collect();

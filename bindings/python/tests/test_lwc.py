@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import pickle
 import platform
 import runpy
 import signal
@@ -369,3 +370,32 @@ def grid(n):
     a = (i[:-1, :-1] * n + j[:-1, :-1]).ravel()
     faces = np.concatenate([np.stack([a, a + n, a + n + 1], 1), np.stack([a, a + n + 1, a + 1], 1)])
     return vertices, faces
+
+
+def test_losses_are_told_of_streams_and_meshes():
+    vertices, faces = torus()
+    heat = np.linspace(0.0, 1.0, len(vertices)) ** 2
+    stream = lwc.encode(vertices, faces, attributes={"heat": heat})
+    assert isinstance(stream, bytes) and pickle.loads(pickle.dumps(stream)).losses == stream.losses
+    losses = {loss.kind: loss for loss in stream.losses}
+    rounded = losses["values-rounded"]
+    assert (rounded.stage, rounded.subject, rounded.total) == ("encoding", "heat", len(vertices))
+    assert 0 < rounded.largest_error < 1 / 4000
+    assert "reordered" in losses and str(losses["reordered"]) == losses["reordered"].message
+
+    assert lwc.decode(stream).losses == []
+    coarse = lwc.decode(stream, level=1)
+    assert [loss.kind for loss in coarse.losses] == ["coarser"]
+    decoder = lwc.Decoder()
+    decoder.push(stream[: len(stream) // 2])
+    assert [loss.kind for loss in decoder.losses] == ["coarser"]
+
+
+def test_strict_allows_no_loss():
+    vertices, faces = torus()
+    with pytest.raises(lwc.EncodeError, match="another order") as error:
+        lwc.encode(vertices, faces, strict=True)
+    assert error.value.kind == "Lossy"
+    stream = lwc.encode(vertices, faces, strict=True, lossless=True, keep_order=True)
+    assert stream.losses == []
+    assert np.array_equal(lwc.decode(stream).vertices, vertices)

@@ -12,7 +12,7 @@ from ._lwc import (
     encode,
     info,
 )
-from ._types import Attribute, Instance, Mesh, Scene
+from ._types import Attribute, Instance, Loss, Mesh, Scene, Stream
 
 __all__ = [
     "Attribute",
@@ -20,8 +20,10 @@ __all__ = [
     "Decoder",
     "EncodeError",
     "Instance",
+    "Loss",
     "Mesh",
     "Scene",
+    "Stream",
     "Update",
     "__version__",
     "decode",

@@ -2,7 +2,14 @@ from typing import TypedDict
 
 from numpy.typing import ArrayLike
 
-from ._types import Attribute as Attribute, Instance as Instance, Mesh as Mesh, Scene as Scene
+from ._types import (
+    Attribute as Attribute,
+    Instance as Instance,
+    Loss as Loss,
+    Mesh as Mesh,
+    Scene as Scene,
+    Stream as Stream,
+)
 
 __version__: str
 
@@ -68,7 +75,8 @@ def encode(
     keep_order: bool = False,
     keep_isolated: bool = False,
     keep_degenerate: bool = False,
-) -> bytes: ...
+    strict: bool = False,
+) -> Stream: ...
 def decode(
     stream: bytes,
     *,
@@ -116,6 +124,8 @@ class Decoder:
     def push(self, piece: bytes) -> list[Update]: ...
     def mesh(self, *, attributes: bool = True) -> Mesh | None: ...
     def info(self) -> Info | None: ...
+    @property
+    def losses(self) -> list[Loss]: ...
     def checksum(self) -> int | None: ...
     def attribute_checksum(self) -> int: ...
     @property

@@ -71,20 +71,69 @@ class Attribute:
         return None if self.indices is None else np.ascontiguousarray(self.indices, dtype=np.int64).ravel()
 
 
+@dataclass(frozen=True)
+class Loss:
+    """One thing that is lost on the way from a mesh to a stream, or from a stream to a mesh. ``str()`` is a sentence."""
+
+    stage: str
+    """``reading``, ``encoding``, ``decoding`` or ``writing``."""
+    kind: str
+    """Such as ``positions-rounded``, ``values-rounded``, ``dropped``, ``reordered`` or ``coarser``."""
+    subject: str
+    """What: the name of an attribute, or a few words; may be empty."""
+    count: int | None
+    """Elements concerned, if they were counted."""
+    total: int | None
+    """Of how many, if known."""
+    largest_error: float | None
+    """Of positions a distance, of directions an angle in radians, else in the units of the attribute."""
+    largest_error_in_edges: float | None
+    """Of positions: the largest error of a vertex divided by the mean length of its edges."""
+    remedy: str
+    """The option of ``lwc`` that keeps it; may be empty."""
+    message: str
+
+    def __str__(self) -> str:
+        return self.message
+
+
+class Stream(bytes):
+    """The bytes of a stream, with the list of ``losses``: what it does not give back of the mesh."""
+
+    losses: list[Loss]
+
+    def __new__(cls, data: bytes = b"", losses: list[Loss] | None = None) -> Stream:
+        stream = super().__new__(cls, data)
+        stream.losses = losses or []
+        return stream
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return bytes(self), self.losses
+
+
 class Mesh(tuple):
-    """Unpacks into ``vertices`` (n × 3, float64) and ``faces`` (m × 3, uint32); has ``attributes`` by name."""
+    """Unpacks into ``vertices`` (n × 3, float64) and ``faces`` (m × 3, uint32); has ``attributes`` by name, and a list
+    of ``losses``: what it lacks of its stream."""
 
     vertices: np.ndarray
     faces: np.ndarray
     attributes: dict[str, Attribute]
+    losses: list[Loss]
 
-    def __new__(cls, vertices: np.ndarray, faces: np.ndarray, attributes: dict[str, Attribute] | None = None) -> Mesh:
+    def __new__(
+        cls,
+        vertices: np.ndarray,
+        faces: np.ndarray,
+        attributes: dict[str, Attribute] | None = None,
+        losses: list[Loss] | None = None,
+    ) -> Mesh:
         mesh = super().__new__(cls, (vertices, faces))
         mesh.vertices, mesh.faces, mesh.attributes = vertices, faces, attributes or {}
+        mesh.losses = losses or []
         return mesh
 
     def __getnewargs__(self) -> tuple[Any, ...]:
-        return self.vertices, self.faces, self.attributes
+        return self.vertices, self.faces, self.attributes, self.losses
 
     def __repr__(self) -> str:
         return f"Mesh({len(self.vertices)} vertices, {len(self.faces)} faces, attributes {list(self.attributes)})"
