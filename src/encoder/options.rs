@@ -40,7 +40,8 @@ pub struct EncodeOptions {
     pub texcoord_bits: u32,
     /// Bits of a component of a colour, 1 to 30. Default 8: colours of 8 bits are kept exactly.
     pub color_bits: u32,
-    /// Bits of a component of any other attribute, 1 to 30. Integers that fit are kept exactly. Default 12.
+    /// Bits of a component of any other attribute, 1 to 30. Whole numbers, which may name things, are kept exactly whatever
+    /// the bits, except `intensity` and `nir`. Default 12.
     pub generic_bits: u32,
     /// Keep vertices that no triangle has. Default false: they are dropped and counted.
     pub keep_isolated: bool,

@@ -92,7 +92,8 @@ pub struct Encode {
     #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().color_bits)]
     #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
     pub color_bits: u32,
-    /// Bits of each component of all other attributes, 1 to 30. Integers that fit are kept exactly.
+    /// Bits of each component of all other attributes, 1 to 30. Whole numbers, which may name things, are kept exactly whatever
+    /// the bits; intensity and near infrared of LAS are rounded.
     #[arg(long, value_name = "BITS", default_value_t = EncodeOptions::default().generic_bits)]
     #[arg(value_parser = value_parser!(u32).range(1..=30), allow_negative_numbers = true)]
     pub generic_bits: u32,
