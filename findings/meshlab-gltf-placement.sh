@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# MeshLab forgets where the nodes of a glTF scene are when it saves a mesh, and merges into one place too.
+# MeshLab forgets where the nodes of a glTF scene stand when it saves a mesh.
 #
 # Expected: a mesh whose node stands at x = 100 is saved at x = 100, or a format without nodes is refused.
 # Happens:  the importer keeps the place beside the mesh as its matrix. save_current_mesh() to PLY, OBJ and STL, and
@@ -64,5 +64,7 @@ print("x after apply_matrix_freeze():", frozen)
 assert frozen == [100, 100, 101]
 meshes.load_new_mesh("scene.gltf")
 meshes.generate_by_merging_visible_meshes()
-print("merged:", sorted(set(x_of(meshes.current_mesh()))))
+merged = sorted(set(x_of(meshes.current_mesh())))
+print("x after merging:", merged)
+assert merged == [0, 1, 100, 101]
 PY

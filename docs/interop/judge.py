@@ -16,7 +16,7 @@ NONE = "–"
 def judge(path, parts):
     """One text for each of COLUMNS."""
     said = Soup(truth.read(path))
-    found = Soup(parts)
+    found = Soup(in_order_of(said, parts))
     place, pairs = placed(path, said, found)
     if pairs is None:
         return ["%d triangles, other places" % len(found.corners)] + [NONE] * (len(COLUMNS) - 1)
@@ -31,6 +31,13 @@ def judge(path, parts):
         names(said.materials, found.materials, pairs),
         next((text for name, text in stray.items() if name not in STANDARD), None) or extra(said, found, pairs),
     ]
+
+
+def in_order_of(said, parts):
+    """A list of objects has no order that means something, so it takes that of the file."""
+    place = {key(np.roll(c, -turn, axis=0)): i for i, c in enumerate(said.corners) for turn in range(3)}
+    first = lambda part: min((place.get(key(c), len(place)) for c in Soup([part]).corners), default=0)
+    return sorted(parts, key=first)
 
 
 class Soup:

@@ -8,7 +8,8 @@ import numpy as np
 
 
 def part(points, triangles, *, vertex=None, corner=None, object=None, material=None):
-    """`vertex` and `corner` map names to values, one a vertex or three a triangle; `object` and `material` are one name or one a triangle."""
+    """`vertex` and `corner` map names to values, one a vertex or three a triangle; a number of values that does not fit is told in
+    `stray`. `object` and `material` are one name, or one a triangle."""
     points = np.asarray(points, float).reshape(-1, 3)
     triangles = np.asarray(triangles, int).reshape(-1, 3)
     vertex = {name: np.asarray(values) for name, values in (vertex or {}).items() if values is not None and np.size(values)}

@@ -70,16 +70,17 @@ EOF
   chmod +x "$work/bin/$1"
 }
 
-# lossless and in the order of the source, so that each difference is made by the reader.
+# Lossless and in the order of the source, so that each difference is made by the reader.
 write_files() {
   mkdir "$work/files"
-  "$work/venv/bin/python" "$here/source.py" "$work/source.glb"
-  "$lwc" encode "$work/source.glb" -o "$work/model.lwc" --lossless --keep-order
+  "$work/venv/bin/python" "$here/source.py" "$work/files/source.glb"
+  "$lwc" encode "$work/files/source.glb" -o "$work/model.lwc" --lossless --keep-order
   for ending in ply obj glb stl; do
     "$lwc" decode "$work/model.lwc" -o "$work/files/model.$ending"
   done
   if "$lwc" decode --help | grep -q -- --split-seams; then
     "$lwc" decode "$work/model.lwc" --split-seams -o "$work/files/split.ply"
+    "$lwc" decode "$work/model.lwc" --split-seams -o "$work/files/split.obj"
   fi
 }
 

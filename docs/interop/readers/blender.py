@@ -1,7 +1,5 @@
 """Blender as the module bpy, with the axes of the file (glTF is always turned to z up)."""
 
-import sys
-
 import bpy
 import numpy as np
 

@@ -14,13 +14,19 @@ HERE = Path(__file__).resolve().parent
 def run(*words, folder=None):
     done = subprocess.run([str(w) for w in words], cwd=folder, capture_output=True, text=True, timeout=120)
     if done.returncode:
-        lines = (done.stdout + done.stderr).strip().splitlines()
-        raise RuntimeError(lines[-1] if lines else f"{words[0]} ended with {done.returncode}")
+        raise RuntimeError(complaint(done.stdout + done.stderr) or f"{words[0]} ended with {done.returncode}")
     return done.stdout
 
 
+def complaint(text):
+    """The line that says what is wrong; Node prints its version after it."""
+    lines = text.strip().splitlines()
+    return next((line for line in lines if "Error" in line), lines[-1] if lines else None)
+
+
 def debian_version(package):
-    return dict(line.split() for line in (WORK / "debian-versions").read_text().splitlines())[package]
+    versions = dict(line.split() for line in (WORK / "debian-versions").read_text().splitlines())
+    return versions.get(package, "as found")
 
 
 def node_version(package):

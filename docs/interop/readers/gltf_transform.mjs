@@ -1,6 +1,6 @@
 // Prints what glTF Transform makes of a file: `node gltf_transform.mjs FILE`.
 import { createRequire } from 'node:module';
-import { NodeIO, VERSION } from '@gltf-transform/core';
+import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 
 const NAMES = { NORMAL: 'normal', TEXCOORD_0: 'uv', COLOR_0: 'colour' };
@@ -27,4 +27,4 @@ function partOf(primitive, node) {
 const document = await io.read(process.argv[2]);
 const parts = document.getRoot().listNodes().filter(node => node.getMesh())
   .flatMap(node => node.getMesh().listPrimitives().map(primitive => partOf(primitive, node)));
-console.log('@@@' + JSON.stringify({ version: VERSION, parts }));
+console.log('@@@' + JSON.stringify({ parts }));

@@ -20,9 +20,11 @@ def read(path):
         if found:
             vertex[ours] = np.stack(found, axis=1)
     vertex |= {{"obj:vn": "normal", "obj:vt": "uv"}.get(k, k): v for k, v in columns.items() if len(v) == len(mesh.points)}
+    if mesh.points.shape[1] == 6:  # Colours of OBJ count as coordinates.
+        vertex["colour"] = mesh.points[:, 3:]
     corner = {}
     for name, blocks in mesh.cell_data.items():
         values = np.concatenate([np.asarray(b, float) for b in blocks])
         if name == "facet_normals":
             corner["normal"] = np.repeat(values, 3, axis=0)
-    return VERSION, [part(mesh.points, triangles, vertex=vertex, corner=corner)]
+    return VERSION, [part(mesh.points[:, :3], triangles, vertex=vertex, corner=corner)]

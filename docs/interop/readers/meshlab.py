@@ -2,7 +2,6 @@
 
 from importlib.metadata import version
 
-import numpy as np
 import pymeshlab
 
 from part import moved, part, turned

@@ -12,4 +12,4 @@ def parts_of(script, path):
     copy = WORK / "node" / script
     copy.write_text((HERE / script).read_text())
     result = json.loads(run("node", copy, os.path.abspath(path)).split("@@@", 1)[1])
-    return result | {"parts": [part(**p) for p in result["parts"]]}
+    return [part(**p) for p in result["parts"]]

@@ -12,6 +12,5 @@ def read(path):
     by = lambda group, left: {NAMES.get(k, k): v.numpy() for k, v in group.items() if k not in left}
     vertex = by(mesh.vertex, ["positions"])
     triangles = mesh.triangle["indices"].numpy()
-    whole = {k: v for k, v in by(mesh.triangle, ["indices"]).items()}
-    corner = {k: v for k, v in whole.items() if v.ndim == 3}
+    corner = {name: values for name, values in by(mesh.triangle, ["indices"]).items() if values.ndim == 3}
     return open3d.__version__, [part(mesh.vertex["positions"].numpy(), triangles, vertex=vertex, corner=corner)]

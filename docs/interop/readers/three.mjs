@@ -1,6 +1,6 @@
 // Prints what the loaders of three.js make of a file: `node three.mjs FILE`.
 import { readFileSync } from 'node:fs';
-import { REVISION, Group, Mesh } from 'three';
+import { Group, Mesh } from 'three';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { OBJLoader } from 'three/examples/jsm/loaders/OBJLoader.js';
 import { PLYLoader } from 'three/examples/jsm/loaders/PLYLoader.js';
@@ -46,4 +46,4 @@ const scene = await load();
 scene.updateMatrixWorld(true);
 const parts = [];
 scene.traverse(thing => thing.isMesh && parts.push(partOf(thing)));
-console.log('@@@' + JSON.stringify({ version: `0.${REVISION}`, parts }));
+console.log('@@@' + JSON.stringify({ parts }));

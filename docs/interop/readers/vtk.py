@@ -5,7 +5,7 @@ import vtk
 
 from part import part
 
-NAMES = {"Normals": "normal", "NORMAL": "normal", "RGB": "colour", "RGBA": "colour", "COLOR_0": "colour", "TEXCOORD_0": "uv", "TCoords": "uv", "Texture Coordinates": "uv"}
+NAMES = {"Normals": "normal", "NORMAL": "normal", "RGB": "colour", "RGBA": "colour", "COLOR_0": "colour", "TEXCOORD_0": "uv"}
 
 
 def read(path):
