@@ -81,7 +81,7 @@ def ply_rows(properties, count, take):
 
 def obj(path):
     tables = {"v": [], "vt": [], "vn": []}
-    faces, objects, materials, groups = [], [], [], []
+    faces, objects, materials = [], [], []
     state = {"o": None, "usemtl": None, "g": None}
     for line in Path(path).read_text().splitlines():
         key, _, rest = line.partition(" ")
