@@ -172,6 +172,8 @@ def colours(said, found, pairs):
         return NONE
     if ours is None:
         return "made up, all alike" if len(np.unique(theirs[..., :3].reshape(-1, 3), axis=0)) == 1 else "made up"
+    if np.nanmin(theirs) < 0:
+        return "negative above 127"
     ours = ours / (255 if np.nanmax(ours) > 1 else 1)
     top = next(t for t in (1, 255, 65535, np.inf) if np.nanmax(theirs) <= t * 1.001)
     rgb = theirs[..., :3] / (top if np.isfinite(top) else 1)
