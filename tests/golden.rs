@@ -408,7 +408,7 @@ mod make {
                 }),
             ),
             ("unknown-chunks", commented),
-            ("lattice", {
+            ("lattice-with-offset", {
                 let step = [0.01, 0.02, 0.003];
                 stream(&noisy(sphere(2), 16, 0.02), |o| {
                     o.grid = on(Lattice { origin: [0.3, -7.1, 1e4], step })
@@ -426,7 +426,7 @@ mod make {
                 })
             }),
             ("own-step-of-each-axis", {
-                let thin = map_positions(noisy(torus(20, 9), 1, 0.02), |p| [1e4 * p[0], p[1], 1e-3 * p[2]]);
+                let thin = map_positions(torus.clone(), |p| [1e4 * p[0], p[1], 1e-3 * p[2]]);
                 stream(&thin, |o| o.quantization_bits = 10)
             }),
             ("max-bumps", stream(&noisy(grid(36, 30, bumpy), 2, 0.03), |o| o.profile = Some(Profile::Max))),
