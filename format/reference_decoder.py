@@ -2886,7 +2886,7 @@ def decode(stream):
         elif kind == "H":
             require(grid is None, "a chunk out of order")
             grid = read_grid(payload)
-            profile = payload[0] >> 2
+            profile = payload[0] >> 2 & 3
             require(profile < 3, "unsupported profile")
             is_fast, Mixed.has_specialists = profile == 1, profile == 2
         elif kind == "L":

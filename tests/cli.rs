@@ -605,7 +605,7 @@ fn the_whole_stream_is_the_mesh_on_the_grid() {
     assert_eq!((decoded.num_vertices(), decoded.num_triangles()), (642, 1280));
 
     let info = workshop.json("info ball.lwc --json");
-    let step = info["step"].as_f64().unwrap();
+    let step = info["step"][0].as_f64().unwrap();
     for p in decoded.positions() {
         for (axis, x) in p.iter().enumerate() {
             let cell = (x - info["origin"][axis].as_f64().unwrap()) / step;

@@ -1,5 +1,6 @@
 //! What rounding to the grid does to a mesh.
 
+use super::quantize::unit_near;
 use crate::bitstream::grid::Grid;
 use crate::mesh::{TriMesh, has_three_vertices};
 use glam::DVec3;
@@ -140,7 +141,7 @@ impl Losses {
         // How an area vector in cells is stretched to one in model units.
         let stretch = [y * z, z * x, x * y];
         // Near 1, so that products neither overflow nor vanish.
-        let unit = super::quantize::unit_near(grid.side());
+        let unit = unit_near(grid.side());
         let of_triangle = |triangle: &[u32; 3]| {
             let corners = triangle.map(|v| mesh.positions()[v as usize]);
             let (before, after) = (area(corners, unit), on_grid(corners.map(|p| grid.cell(p))));
