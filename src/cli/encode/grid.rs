@@ -109,7 +109,7 @@ impl Asked {
 /// How much more a coordinate of an instance may be off than those of its mesh as the stream has it.
 fn largest_stretch(scene: &SceneTable) -> f64 {
     let of_instance = |instance: &lwc::mesh::Instance| {
-        let exponent = scene.exponents.get(instance.mesh as usize).copied().unwrap_or(0);
+        let exponent = scene.exponents.get(instance.mesh).copied().unwrap_or(0);
         let of_row = |row: &[f64; 4]| row[..3].iter().map(|x| x.abs()).sum::<f64>();
         instance.transform.iter().map(of_row).fold(0.0, f64::max) * 2_f64.powi(-i32::from(exponent))
     };
