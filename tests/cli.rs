@@ -64,14 +64,18 @@ fn thin_bar() -> TriMesh {
 fn a_grid_that_is_too_coarse_is_said_with_the_bits_that_do() {
     let workshop = Workshop::new();
     io::write(workshop.path("bar.obj"), &thin_bar()).unwrap();
-    let (_, stderr) = workshop.ok("encode bar.obj -q 8 -o coarse.lwc");
-    assert!(stderr.contains("160 of 160 triangles collapse or turn over on the grid"), "{stderr}");
-    assert!(stderr.contains("8 bits: steps of 3.92e-3, vertices off by at most"), "{stderr}");
+    let (_, stderr) = workshop.ok("encode bar.obj -q 8 --cubic-grid -o coarse.lwc");
+    assert!(stderr.contains("160 of 160 triangles collapsed: the grid is too coarse, `-q "), "{stderr}");
+    assert!(stderr.contains("8 bits: steps of 3.92e-3\n"), "{stderr}");
     let bits = stderr.split("`-q ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();
-    let (_, stderr) = workshop.ok(&format!("encode bar.obj -q {bits} -o fine.lwc"));
+    let (_, stderr) = workshop.ok(&format!("encode bar.obj -q {bits} --cubic-grid -o fine.lwc"));
+    assert!(!stderr.contains("warning"), "{stderr}");
+    let (_, stderr) = workshop.ok("encode bar.obj -q 8 -o stretched.lwc");
+    assert!(stderr.contains("note") && stderr.contains("each axis has its own step"), "{stderr}");
     assert!(!stderr.contains("warning"), "{stderr}");
     let (_, stderr) = workshop.ok("encode bar.obj -q 8 --lossless -o exact.lwc");
     assert!(!stderr.contains("warning") && !stderr.contains("steps of"), "{stderr}");
+    assert!(!stderr.contains("positions rounded"), "{stderr}");
 }
 
 #[test]
@@ -617,7 +621,7 @@ fn the_whole_stream_is_the_mesh_on_the_grid() {
     assert_eq!((decoded.num_vertices(), decoded.num_triangles()), (642, 1280));
 
     let info = workshop.json("info ball.lwc --json");
-    let step = info["step"].as_f64().unwrap();
+    let step = info["step"][0].as_f64().unwrap();
     for p in decoded.positions() {
         for (axis, x) in p.iter().enumerate() {
             let cell = (x - info["origin"][axis].as_f64().unwrap()) / step;

@@ -44,8 +44,16 @@ fn attributes_survive_random_meshes_and_damage() {
     for size in (20..900).step_by(9) {
         fuzzing::round_trip(&random(size));
     }
+    // The number that asks for steps and lattices.
+    for (size, grid) in (20..900).step_by(9).zip((9..15).cycle()) {
+        let mut input = random(size);
+        input[13] = grid + 45 * (input[13] % 5);
+        fuzzing::round_trip(&input);
+    }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("format/golden");
-    for name in ["colours", "texture-seams", "flat-normals", "materials"] {
+    for name in
+        ["colours", "texture-seams", "flat-normals", "materials", "lattice-exact", "lattice-with-offset"]
+    {
         let stream = std::fs::read(folder.join(name).with_extension("lwc")).unwrap_or_default();
         assert!(!stream.is_empty(), "{name}");
         for _ in 0..400 {

@@ -4,6 +4,7 @@
 pub(crate) mod chunk;
 pub(crate) mod chunk_index;
 pub(crate) mod compensation;
+pub(crate) mod grid;
 pub(crate) mod header;
 pub(crate) mod pass_table;
 pub(crate) mod profile;

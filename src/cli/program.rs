@@ -44,7 +44,7 @@ mod tests {
     fn defaults_are_those_of_the_library() {
         let args = Args::try_parse_from(["lwc", "encode", "x.ply"]).unwrap();
         let Command::Encode(encode) = args.command else { panic!("not encode") };
-        assert_eq!(encode.options(), EncodeOptions::default());
+        assert_eq!(encode.options(lwc::GridChoice::Auto), EncodeOptions::default());
         let args = Args::try_parse_from(["lwc", "decode", "x.lwc"]).unwrap();
         let Command::Decode(decode) = args.command else { panic!("not decode") };
         assert_eq!(decode.limits.limits(), Limits::default());

@@ -6,7 +6,8 @@ use super::options::EncodeOptions;
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::compensation::Compensation;
-use crate::bitstream::header::{Grid, Header, Pass, Provenance};
+use crate::bitstream::grid::Grid;
+use crate::bitstream::header::{Header, Pass, Provenance};
 use crate::bitstream::pass_table;
 
 /// Materials of at most this many bytes come before the passes: the base mesh should not have to wait for pictures.

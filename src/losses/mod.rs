@@ -202,9 +202,11 @@ impl Loss {
         Self { is_requested: true, ..self }
     }
 
-    /// Whether it is what the options ask for, or of a [kind](LossKind::is_usual) that is usual.
+    /// Whether it is what the options ask for, or of a [kind](LossKind::is_usual) that is usual. Some triangles that collapse
+    /// or turn are, too, where no remedy says that they are many.
     pub fn is_usual(&self) -> bool {
-        self.is_requested || self.kind.is_usual()
+        let is_of_triangles = matches!(self.kind, LossKind::TrianglesCollapsed | LossKind::TrianglesTurned);
+        self.is_requested || self.kind.is_usual() || is_of_triangles && self.remedy.is_empty()
     }
 
     /// With what to do about it.

@@ -170,8 +170,14 @@ typedef struct LwcEncodeOptions {
   double radius;
   // Factor of the radius from each level to the next coarser one.
   double growth;
-  // Bits per coordinate, 1 to 30.
+  // Bits per coordinate, 1 to 30; not looked at where `step` is set.
   uint32_t quantization_bits;
+  // Keep the cubic grid even if more than 1 % of the triangles collapse or turn over in it.
+  bool cubic_grid;
+  // Steps of a lattice along the axes, model units, above 0; all 0 for the grid of `quantization_bits`.
+  double step[3];
+  // A point of that lattice, model units. Streams with the same step and origin share borders bit for bit.
+  double grid_origin[3];
   // Levels above the base mesh; negative: until the base mesh is small.
   int32_t levels;
   // Grid steps to the mean edge of a level; 0: by the error of each level.

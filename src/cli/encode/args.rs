@@ -1,5 +1,6 @@
 //! What may be typed after `lwc encode`.
 
+use super::grid::GridArgs;
 use crate::cli::args::{Reading, Scale};
 use crate::cli::losses::Strictness;
 use crate::cli::output::{Destination, with_ending, without_mesh_ending};
@@ -7,13 +8,13 @@ use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::value_parser;
 use lwc::io::TerrainOptions;
-use lwc::{EncodeOptions, Optimize, Partition, Profile};
+use lwc::{EncodeOptions, GridChoice, Optimize, Partition, Profile};
 use std::path::PathBuf;
 
 /// Encode a mesh (.obj .ply .stl .glb .gltf) or a terrain point cloud (.las .laz), plain or compressed (.zst).
 ///
-/// The finest level is the mesh with its vertices rounded to a grid of 2^BITS cells along its longest side;
-/// every triangle comes back, with its orientation. Warnings count what has to be dropped or cut.
+/// The finest level is the mesh with its vertices rounded to a grid: 2^BITS cells along its longest side (`-q`), or steps in
+/// units of the model (`--step`, `--precision`, `--grid`). Every triangle comes back, with its orientation. Warnings count what has to be dropped or cut.
 #[derive(Debug, clap::Args)]
 pub struct Encode {
     /// Mesh to encode.
@@ -127,15 +128,18 @@ pub struct Encode {
     pub json: bool,
     #[command(flatten)]
     pub reading: Reading,
-    // Last: its heading would cover what follows.
+    // Last: their headings would cover what follows.
+    #[command(flatten)]
+    pub grid: GridArgs,
     #[command(flatten)]
     pub terrain: Terrain,
 }
 
 impl Encode {
-    /// The options of the library.
-    pub fn options(&self) -> EncodeOptions {
+    /// The options of the library, with the grid that is asked for.
+    pub fn options(&self, grid: GridChoice) -> EncodeOptions {
         let mut options = EncodeOptions::default();
+        options.grid = grid;
         options.descriptor = self.scale.descriptor;
         options.window = self.scale.window.window();
         options.descriptor_attributes.clone_from(&self.scale.descriptor_attributes);

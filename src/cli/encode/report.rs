@@ -1,7 +1,7 @@
 //! What is told of a stream that was written.
 
 use super::args::Encode;
-use super::grid_loss::GridLoss;
+use super::grid_report;
 use crate::cli::losses;
 use crate::cli::output::{Destination, print_json};
 use crate::cli::passes;
@@ -22,8 +22,6 @@ pub struct Report<'a> {
     /// What was verified, if anything.
     pub verified: Option<String>,
     pub encoded: &'a Encoded,
-    /// Unless coordinates are kept bit for bit.
-    pub grid: Option<GridLoss>,
     pub destination: Destination,
     pub read_seconds: f64,
     pub encode_seconds: f64,
@@ -67,9 +65,8 @@ impl Report<'_> {
         let finest = info.passes().last();
         let vertices = finest.map_or(0, |p| p.vertices as usize - repair.repeated_vertices);
         let ratio = self.ratio().map(|r| format!(", {:.1} % of {}", 100.0 * r, self.args.input.display()));
-        let grid = self.grid.as_ref().map(|grid| {
-            format!(": steps of {:.2e}, vertices off by at most {:.2e}", grid.step, grid.largest_error)
-        });
+        let steps = || format!(": steps of {}", grid_report::step(self.encoded.grid_error.step));
+        let grid = (!self.args.lossless).then(steps);
         format!(
             "{}: {}, {}, {} on the base mesh, {} bits{}\n{bytes} bytes, {:.2} bits per vertex{}, {:.2} s{}",
             self.destination.name(),
@@ -87,7 +84,7 @@ impl Report<'_> {
 
     fn to_json(&self) -> Value {
         let (args, info, mesh) = (self.args, &self.encoded.info, &self.file.mesh);
-        let repair = &self.encoded.repair;
+        let (repair, error) = (&self.encoded.repair, &self.encoded.grid_error);
         let finest = info.passes().last();
         let output = match &self.destination {
             Destination::Stdout => None,
@@ -106,9 +103,11 @@ impl Report<'_> {
             "triangles": finest.map(|p| p.triangles),
             "levels": info.finest_level(),
             "quantization_bits": info.quantization_bits(),
-            "step": self.grid.as_ref().map(|grid| grid.step),
-            "largest_error": self.grid.as_ref().map(|grid| grid.largest_error),
-            "triangles_lost": self.grid.as_ref().map(|grid| grid.triangles_lost),
+            "step": error.step,
+            "largest_error": error.largest_error,
+            "largest_error_in_edges": error.largest_error_in_edges,
+            "triangles_collapsed": error.triangles_collapsed,
+            "triangles_turned": error.triangles_turned,
             "descriptor": args.scale.descriptor.name(),
             "rings": args.scale.window.rings,
             "radius": args.scale.window.radius,
