@@ -1,12 +1,12 @@
 //! Mesh files: OBJ, PLY, STL, glTF (feature `gltf`) and terrain in LAS and LAZ (feature `las`), each also
-//! compressed with zstd (`.zst`).
+//! compressed with zstd (`.zst`) or gzip (`.gz`).
 //!
 //! The file formats stay at the edge of the crate: a file becomes a [`TriMesh`](crate::TriMesh), its
 //! [`Attributes`](crate::mesh::Attributes) and a
 //! [`ReadReport`], these become a file, and nothing else knows that files exist.
 //!
 //! Input is not trusted. No input makes a reader panic, and counts declared in a file never decide how much
-//! is allocated: memory grows as the data that fills it is found, to a small multiple of the file's size. A `.zst` file
+//! is allocated: memory grows as the data that fills it is found, to a small multiple of the file's size. A `.zst` or `.gz` file
 //! that unpacks out of all proportion is refused ([`ReadOptions`]), and OBJ, PLY and STL are unpacked in pieces.
 //!
 //! ```no_run
@@ -29,6 +29,7 @@ mod las;
 mod mesh_file;
 mod obj;
 mod ply;
+mod polygon;
 mod read;
 #[cfg(feature = "gltf")]
 mod scene;
