@@ -17,7 +17,10 @@
 //! ```
 
 mod atomic;
+mod beside;
 mod builder;
+#[cfg(feature = "gltf")]
+mod common_type;
 mod counter;
 mod error;
 mod foreign;
@@ -26,6 +29,8 @@ mod format;
 mod gltf;
 #[cfg(feature = "las")]
 mod las;
+#[cfg(feature = "gltf")]
+mod materials;
 mod mesh_file;
 mod obj;
 mod ply;

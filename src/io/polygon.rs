@@ -117,7 +117,8 @@ struct Ears {
 impl Ears {
     fn new(points: Vec<[f64; 2]>) -> Self {
         let n = points.len() as u32;
-        let doubled_area: f64 = (1..points.len() - 1).map(|k| area(points[0], points[k], points[k + 1])).sum();
+        let doubled_area: f64 =
+            (1..points.len() - 1).map(|k| area(points[0], points[k], points[k + 1])).sum();
         let mut ears = Self {
             previous: (0..n).map(|k| (k + n - 1) % n).collect(),
             next: (0..n).map(|k| (k + 1) % n).collect(),
@@ -254,7 +255,10 @@ mod tests {
             }
         }
         // Bent along the diagonal, as quads of scanned surfaces are.
-        assert_eq!(Cutter::default().cut(&[[0.0; 3], [1.0, 0.0, 0.9], [1.0, 1.0, 0.0], [0.0, 1.0, 0.9]]), Cut::Fan);
+        assert_eq!(
+            Cutter::default().cut(&[[0.0; 3], [1.0, 0.0, 0.9], [1.0, 1.0, 0.0], [0.0, 1.0, 0.9]]),
+            Cut::Fan
+        );
     }
 
     #[test]
@@ -297,8 +301,16 @@ mod tests {
     #[test]
     fn a_polygon_around_a_hole_is_covered_once() {
         let points = [
-            [0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [0.0, 0.0],
-            [1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 1.0], [1.0, 1.0],
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 4.0],
+            [0.0, 4.0],
+            [0.0, 0.0],
+            [1.0, 1.0],
+            [1.0, 3.0],
+            [3.0, 3.0],
+            [3.0, 1.0],
+            [1.0, 1.0],
         ];
         let triangles = ears(&in_plane(&points));
         assert_eq!((triangles.len(), covered(&points, &triangles)), (8, 24.0));
@@ -311,7 +323,10 @@ mod tests {
         assert_eq!(Cutter::default().cut(&[[1.0; 3]; 5]), Cut::Fan);
         let line: Vec<_> = (0..6).map(|k| [f64::from(k); 3]).collect();
         assert_eq!(Cutter::default().cut(&line), Cut::Fan);
-        assert!(!matches!(Cutter::default().cut(&[[f64::MAX; 3], [-f64::MAX; 3], [0.0; 3], [1.0; 3]]), Cut::Ears(_)));
+        assert!(!matches!(
+            Cutter::default().cut(&[[f64::MAX; 3], [-f64::MAX; 3], [0.0; 3], [1.0; 3]]),
+            Cut::Ears(_)
+        ));
     }
 
     #[test]

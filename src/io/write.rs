@@ -4,7 +4,7 @@ use super::atomic::write_atomic;
 #[cfg(feature = "gltf")]
 use super::error::ReadError;
 use super::error::WriteError;
-use super::format::{Format, format_and_compression};
+use super::format::{Compression, Format, format_and_compression};
 #[cfg(feature = "gltf")]
 use super::gltf;
 #[cfg(feature = "gltf")]
@@ -14,10 +14,11 @@ use super::mesh_file::WriteReport;
 use super::scene::Scene;
 use super::{obj, ply, stl};
 use crate::mesh::{Attribute, Attributes, Domain, Semantic, TriMesh, Values};
+use flate2::write::GzEncoder;
 use std::io::Write;
 use std::path::Path;
 
-/// Writes a mesh file; the ending of `path` says which format, a further `.zst` compresses it.
+/// Writes a mesh file; the ending of `path` says which format, a further `.gz` or `.zst` compresses it.
 ///
 /// The file appears complete or not at all (see [`write_atomic`]).
 ///
@@ -45,16 +46,24 @@ fn write_file(
     write: impl FnOnce(&mut dyn Write, Format) -> Result<WriteReport, WriteError>,
 ) -> Result<WriteReport, WriteError> {
     let known = format_and_compression(path).filter(|(format, _)| format.is_written());
-    let (format, is_compressed) = known.ok_or(WriteError::UnknownEnding)?;
+    let (format, compression) = known.ok_or(WriteError::UnknownEnding)?;
     let mut report = WriteReport::default();
     write_atomic(path, |out| {
-        if is_compressed {
-            let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
-            report = write(&mut compressor, format)?;
-            compressor.finish()?;
-        } else {
-            report = write(out, format)?;
-        }
+        report = match compression {
+            Some(Compression::Zstd) => {
+                let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
+                let report = write(&mut compressor, format)?;
+                compressor.finish()?;
+                report
+            }
+            Some(Compression::Gzip) => {
+                let mut compressor = GzEncoder::new(out, flate2::Compression::default());
+                let report = write(&mut compressor, format)?;
+                compressor.finish()?;
+                report
+            }
+            None => write(out, format)?,
+        };
         Ok::<(), WriteError>(())
     })?;
     Ok(report)

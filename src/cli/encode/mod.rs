@@ -6,7 +6,7 @@ mod report;
 
 use super::bar::Part;
 use super::exit::Failure;
-use super::input::{read_for_stream, read_terrain};
+use super::input::{name_of, read_terrain};
 use super::input_file::{self, holds_stream};
 use super::output::Destination;
 use super::quantity::counted;
@@ -26,8 +26,11 @@ use std::time::Instant;
 /// Reads, encodes, verifies, writes, reports.
 pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let destination = args.destination();
-    check_input(&args.input).with_context(|| args.input.display().to_string())?;
-    destination.check(Some(&args.input), false)?;
+    args.check_output()?;
+    for input in args.inputs() {
+        check_input(input).with_context(|| name_of(input))?;
+        destination.check(Some(input), false)?;
+    }
     check_ending(&destination).with_context(|| destination.name())?;
     let start = Instant::now();
     let bar = ui.bar();
@@ -36,12 +39,12 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         bar.split([("reading", 5.0), ("encoding", 85.0), ("verifying", verifying)]);
     let mut file = match args.terrain.options() {
         Some(options) => read_terrain(&args.input, &options, &args.reading, reading, ui)?,
-        None => read_for_stream(&args.input, args.merge, &args.reading, reading, ui)?,
+        None => args.stream_input().read(reading, ui)?,
     };
     let left_out = if args.no_attributes { drop_attributes(&mut file) } else { Vec::new() };
     let read_seconds = start.elapsed().as_secs_f64();
 
-    let name = args.input.display().to_string();
+    let name = args.input_name();
     let start = Instant::now();
     let (encoded, options) = encode(&file, args, encoding).with_context(|| name.clone())?;
     let encode_seconds = start.elapsed().as_secs_f64();
@@ -120,7 +123,8 @@ fn encode(file: &MeshFile, args: &Encode, part: Part) -> Result<(Encoded, Encode
 fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
     let attributes = std::mem::take(&mut file.attributes);
     let names = attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
-    names.chain(attributes.material_libraries.first().map(|_| "mtllib".to_owned())).collect()
+    let libraries = attributes.material_libraries.first().map(|_| "mtllib".to_owned());
+    names.chain(libraries).chain(attributes.gltf_materials.map(|_| "materials".to_owned())).collect()
 }
 
 /// With `--lossless` even these are kept, and other programs may choke on them.

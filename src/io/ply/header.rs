@@ -32,7 +32,7 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Comments that are no mere comments: names of textures.
+    /// Comments that are no mere comments: files of textures, in the order in which `texnumber` counts them.
     pub textures: Vec<String>,
 }
 
@@ -95,11 +95,11 @@ pub(super) fn read_header(source: &mut Source) -> Result<Header, ReadError> {
     Err(ReadError::syntax(Place::Line(source.num_lines()), "the file ends in the header"))
 }
 
-/// `comment TextureFile skin.png` without its first word, fit for a message.
+/// The name in `comment TextureFile skin.png`.
 fn texture(line: &[u8]) -> String {
-    let line = line.trim_ascii_start();
-    let name = line.strip_prefix(b"comment").unwrap_or(line).trim_ascii_start();
-    format!("TextureFile {}", quoted(name.strip_prefix(b"TextureFile").unwrap_or(name)))
+    let after = |text: &'_ [u8], word: &[u8]| text.trim_ascii_start().strip_prefix(word).map(<[u8]>::to_vec);
+    let name = after(line, b"comment").and_then(|rest| after(&rest, b"TextureFile")).unwrap_or_default();
+    clean_name(name.trim_ascii())
 }
 
 fn parse_encoding(name: &[u8], version: &[u8], place: Place) -> Result<Encoding, ReadError> {
