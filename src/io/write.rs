@@ -131,7 +131,7 @@ pub fn write_with_attributes_to(
         let misfit = |error| WriteError::Unrepresentable { message: misfit(error) };
         attribute.validate(mesh).map_err(misfit)?;
     }
-    let mut report = match format {
+    let report = match format {
         Format::Obj => obj::write(&mut out, mesh, attributes)?,
         Format::Ply => ply::write(&mut out, mesh, attributes)?,
         Format::Stl => {
@@ -149,10 +149,25 @@ pub fn write_with_attributes_to(
             return Err(WriteError::Unrepresentable { message });
         }
     };
-    if attributes.gltf_materials.is_some() {
-        report.ignored.push("materials except their names".to_owned());
+    Ok(WriteReport { ignored: [report.ignored, others_left_out(attributes, format)].concat(), ..report })
+}
+
+/// What a format that is not glTF leaves out of what the mesh has once for all.
+fn others_left_out(attributes: &Attributes, format: Format) -> Vec<String> {
+    let is_named = match format {
+        Format::Obj => !attributes.material_libraries.is_empty(),
+        Format::Ply => attributes.list.iter().any(|attribute| attribute.name == ply::TEXTURE_FILE),
+        _ => false,
+    };
+    let mut left_out = Vec::new();
+    if attributes.gltf_materials.is_some() && !is_named {
+        left_out.push("materials except their names".to_owned());
     }
-    Ok(report)
+    // glTF keeps both.
+    if format != Format::Ply {
+        left_out.extend(attributes.metadata.iter().map(|(key, _)| key.clone()));
+    }
+    left_out
 }
 
 /// Writes `mesh` as PLY with a colour per vertex (properties `red`, `green` and `blue`), else as

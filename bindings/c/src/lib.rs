@@ -21,6 +21,7 @@ use attributes::Texts;
 use error::guard;
 use lwc::mesh::Attributes;
 use lwc::{PassKind, PositionUpdater, TriMesh};
+use std::ffi::CString;
 use std::slice;
 
 /// A mesh with its attributes, that owns its arrays.
@@ -29,13 +30,16 @@ pub struct Mesh {
     attributes: Attributes,
     /// One for each attribute.
     texts: Vec<Texts>,
+    /// Keys and texts of the metadata.
+    metadata: Vec<[CString; 2]>,
 }
 
 impl Mesh {
     /// As a pointer for C.
     fn hand_out(mesh: TriMesh, attributes: Attributes) -> *mut Self {
         let texts = Texts::of(&attributes);
-        Box::into_raw(Box::new(Self { mesh, attributes, texts }))
+        let metadata = attributes::metadata_of(&attributes);
+        Box::into_raw(Box::new(Self { mesh, attributes, texts, metadata }))
     }
 }
 

@@ -52,6 +52,8 @@ pub(super) struct Asset {
     #[serde(deserialize_with = "or_default")]
     pub version: String,
     pub min_version: Option<String>,
+    #[serde(deserialize_with = "or_default")]
+    pub extras: Value,
 }
 
 #[derive(Debug, Deserialize)]

@@ -24,6 +24,8 @@ pub(super) use write::{Container, write, write_scene};
 use super::{Place, ReadError, Scene, beside::Folder};
 use accessor::Store;
 use json::Document;
+use serde_json::Value;
+use std::sync::Arc;
 
 /// Extensions that a file may require: they are read, or change nothing that is. Those of materials as well.
 const KNOWN_EXTENSIONS: [&str; 9] = [
@@ -50,6 +52,8 @@ pub(super) fn read(bytes: &[u8], folder: &mut Folder) -> Result<Scene, ReadError
     for index in 0..document.meshes.len() {
         scene.meshes.push(mesh::read_mesh(&document, index, &names, &mut store)?);
     }
+    let metadata: Arc<[(String, String)]> = metadata(&document.asset.extras).into();
+    scene.meshes.iter_mut().for_each(|file| file.attributes.metadata = metadata.clone());
     scene.gltf_materials = materials::read(&document, &mut store, folder, &mut scene.report)?;
     scene.num_bytes = store.num_bytes();
     for (what, is_there) in [
@@ -62,6 +66,17 @@ pub(super) fn read(bytes: &[u8], folder: &mut Folder) -> Result<Scene, ReadError
         }
     }
     Ok(scene)
+}
+
+/// Keys of the metadata of a file, and bytes of each of its texts.
+const MAX_KEYS: usize = 16;
+const MAX_METADATA_BYTES: usize = 1 << 16;
+
+/// Coordinate reference systems among what a program has noted, as they are written here.
+fn metadata(extras: &Value) -> Vec<(String, String)> {
+    let pair = |(key, text): (&String, &Value)| Some((key.clone(), text.as_str()?.to_owned()));
+    let is_known = |(key, text): &(String, String)| key.starts_with("crs.") && text.len() <= MAX_METADATA_BYTES;
+    extras.as_object().into_iter().flatten().filter_map(pair).filter(is_known).take(MAX_KEYS).collect()
 }
 
 fn check_extensions(document: &Document) -> Result<(), ReadError> {

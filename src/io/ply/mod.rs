@@ -15,6 +15,7 @@ mod scalar;
 mod textures;
 mod write;
 
+pub(super) use textures::TEXTURE_FILE;
 pub(super) use write::write;
 
 use super::{MeshFile, ReadError, beside::Folder, builder::MeshBuilder, builder::fan, source::Source};
@@ -49,6 +50,7 @@ pub(super) fn read(source: &mut Source, folder: &mut Folder) -> Result<MeshFile,
         builder.report.ignore("the last digits of integers beyond 53 bits");
     }
     builder.num_bytes = body.offset();
+    builder.attributes.metadata = header.metadata.into();
     let mut file = builder.finish()?;
     textures::attach(&mut file, header.textures, folder);
     Ok(file)

@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// The attribute that says which texture a triangle has.
-pub(super) const TEXTURE_FILE: &str = "TextureFile";
+pub(in crate::io) const TEXTURE_FILE: &str = "TextureFile";
 
 /// More textures than anybody has; their names are in memory for little of the file.
 const MAX_TEXTURES: usize = 1 << 16;

@@ -26,7 +26,10 @@ pub(in crate::io) fn write(
     let index = if mesh.num_vertices() <= i32::MAX as usize { "int" } else { "uint" };
     out.write_all(b"ply\nformat binary_little_endian 1.0\n")?;
     for name in layout.textures {
-        writeln!(out, "comment {TEXTURE_FILE} {}", name.replace(['\n', '\r'], " "))?;
+        writeln!(out, "comment {TEXTURE_FILE} {}", one_line(name))?;
+    }
+    for (key, text) in &*attributes.metadata {
+        writeln!(out, "comment {} {}", one_line(key), one_line(text))?;
     }
     write!(
         out,
@@ -62,6 +65,11 @@ pub(in crate::io) fn write(
         layout.of_faces.iter().try_for_each(|attribute| write_row(out, attribute, attribute.entry(t)))?;
     }
     Ok(report)
+}
+
+/// A comment ends where its line ends.
+fn one_line(text: &str) -> String {
+    text.replace(['\n', '\r'], " ")
 }
 
 /// Which attribute goes where.

@@ -13,6 +13,9 @@ use std::sync::Arc;
 const MAX_ELEMENTS_PER_BYTE: usize = 16;
 const MIN_MAX_ELEMENTS: usize = 1 << 20;
 
+/// Keys of the metadata of all meshes.
+const MAX_KEYS: usize = 64;
+
 impl Scene {
     /// One mesh of all instances in their places. If there are several, each triangle says which it belongs
     /// to, as attribute `node`. Normals turn with their surface; a mirrored instance keeps its outside.
@@ -98,6 +101,8 @@ pub(super) struct Merger {
     columns: Vec<Column>,
     /// Each once, in order of appearance.
     libraries: IndexedNames,
+    /// Of several texts for a key the first.
+    metadata: Vec<(String, String)>,
 }
 
 /// Names, each once.
@@ -149,13 +154,14 @@ impl Merger {
         let mut builder = MeshBuilder::for_file(scene.num_bytes);
         builder.report = scene.report.clone();
         builder.attributes.gltf_materials.clone_from(&scene.gltf_materials);
-        Self { builder, columns: Vec::new(), libraries: IndexedNames::default() }
+        Self { builder, columns: Vec::new(), libraries: IndexedNames::default(), metadata: Vec::new() }
     }
 
     /// Adds a mesh; `name` is for errors.
     pub(super) fn add(&mut self, file: &MeshFile, name: &str, motion: Motion) -> Result<(), ReadError> {
         let MeshFile { mesh, attributes, report } = file;
         self.libraries.add(&attributes.material_libraries);
+        self.add_metadata(&attributes.metadata);
         let builder = &mut self.builder;
         report.ignored.iter().for_each(|name| builder.report.ignore(name));
         builder.report.polygons_triangulated += report.polygons_triangulated;
@@ -193,6 +199,17 @@ impl Merger {
             self.add_attribute(file, attribute, num_before, corners)?;
         }
         Ok(())
+    }
+
+    /// A file has few keys; what the meshes of a stream have is the same.
+    fn add_metadata(&mut self, metadata: &[(String, String)]) {
+        for (key, text) in metadata.iter().take(MAX_KEYS) {
+            match self.metadata.iter().find(|(known, _)| known == key) {
+                None if self.metadata.len() < MAX_KEYS => self.metadata.push((key.clone(), text.clone())),
+                Some((_, known)) if known == text => {}
+                _ => self.builder.report.ignore(&format!("another {key}")),
+            }
+        }
     }
 
     fn add_attribute(
@@ -253,6 +270,7 @@ impl Merger {
         for Column { attribute, rows, .. } in self.columns {
             self.builder.attributes.list.push(Attribute { indices: Some(rows), ..attribute });
         }
+        self.builder.attributes.metadata = self.metadata.into();
         self.builder.attributes.material_libraries = self.libraries.list.into();
         let mut file = self.builder.finish()?;
         // Where no instance has a seam, corners are more than is needed.

@@ -75,6 +75,7 @@ impl Scene {
         for (part, &exponent) in parts.iter().zip(&table.exponents) {
             let mut file = part.extract(mesh, &listed, power_of_two(exponent).recip(), &mut names)?;
             file.attributes.material_libraries = attributes.material_libraries.clone();
+            file.attributes.metadata = attributes.metadata.clone();
             meshes.push(file);
         }
         Ok(Some(Self {
