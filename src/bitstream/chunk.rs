@@ -58,7 +58,10 @@ pub(crate) mod kind {
 
     /// True if a known kind belongs directly before or after a pass.
     pub(crate) fn is_known_elsewhere(kind: u8) -> bool {
-        matches!(kind, PROVENANCE | COMPENSATION | SCENE | METADATA | DECLARATIONS | ATTRIBUTES | ANNOUNCED | STITCHING)
+        matches!(
+            kind,
+            PROVENANCE | COMPENSATION | SCENE | METADATA | DECLARATIONS | ATTRIBUTES | ANNOUNCED | STITCHING
+        )
     }
 
     /// True if the chunk is a pass: the table of passes knows its length.

@@ -107,7 +107,10 @@ pub(super) fn quantize(
     if !attributes.metadata.is_empty() {
         let payload = metadata::write(&attributes.metadata);
         let is_valid = metadata::read(&payload, &mut Budget::new(0, u64::MAX)).is_some();
-        let fail = || EncodeError::Attribute { name: "metadata".to_owned(), what: "a key is there twice".to_owned() };
+        let fail = || EncodeError::Attribute {
+            name: "metadata".to_owned(),
+            what: "a key is there twice".to_owned(),
+        };
         quantized.metadata = Some(Some(payload).filter(|_| is_valid).ok_or_else(fail)?);
     }
     let mut num_tracks = 0;

@@ -125,7 +125,11 @@ fn drop_attributes(file: &mut MeshFile) -> Vec<String> {
     let names = attributes.list.iter().map(|attribute| attribute.name.replace(' ', "/"));
     let libraries = attributes.material_libraries.first().map(|_| "mtllib".to_owned());
     let metadata = attributes.metadata.iter().map(|(key, _)| key.clone());
-    names.chain(libraries).chain(metadata).chain(attributes.gltf_materials.map(|_| "materials".to_owned())).collect()
+    names
+        .chain(libraries)
+        .chain(metadata)
+        .chain(attributes.gltf_materials.map(|_| "materials".to_owned()))
+        .collect()
 }
 
 /// With `--lossless` even these are kept, and other programs may choke on them.

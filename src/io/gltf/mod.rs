@@ -75,7 +75,8 @@ const MAX_METADATA_BYTES: usize = 1 << 16;
 /// Coordinate reference systems among what a program has noted, as they are written here.
 fn metadata(extras: &Value) -> Vec<(String, String)> {
     let pair = |(key, text): (&String, &Value)| Some((key.clone(), text.as_str()?.to_owned()));
-    let is_known = |(key, text): &(String, String)| key.starts_with("crs.") && text.len() <= MAX_METADATA_BYTES;
+    let is_known =
+        |(key, text): &(String, String)| key.starts_with("crs.") && text.len() <= MAX_METADATA_BYTES;
     extras.as_object().into_iter().flatten().filter_map(pair).filter(is_known).take(MAX_KEYS).collect()
 }
 

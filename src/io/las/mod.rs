@@ -114,7 +114,8 @@ fn attributes(points: &[Point], has_colour: bool, columns: &[Column]) -> Vec<Att
 }
 
 /// What other formats would have twice.
-const TAKEN: [&str; 9] = ["x", "y", "z", "classification", "intensity", "red", "green", "blue", "red green blue"];
+const TAKEN: [&str; 9] =
+    ["x", "y", "z", "classification", "intensity", "red", "green", "blue", "red green blue"];
 
 /// A described field may have any name.
 fn free_name(name: &str, taken: &HashSet<String>) -> String {
