@@ -1,6 +1,6 @@
 //! What all readers do with vertices and faces once they have them.
 
-use super::polygon::{Cut, Cutter, recut};
+use super::polygon::{Cut, Cutter, quad_fits, recut};
 use super::{MeshFile, ReadError, ReadReport};
 use crate::mesh::{Attributes, Domain, NO_ENTRY, TriMesh};
 
@@ -74,6 +74,9 @@ impl MeshBuilder {
         let mut corners = Vec::new();
         for Polygon { first_triangle, num_corners } in std::mem::take(&mut self.polygons) {
             let first = first_triangle as usize;
+            if num_corners == 4 && self.is_plain_quad(first) {
+                continue;
+            }
             let fan = first..first + num_corners as usize - 2;
             corners.clear();
             corners.extend(corners_of(&self.triangles[fan.clone()]).map(|v| self.positions[v as usize]));
@@ -83,6 +86,12 @@ impl MeshBuilder {
                 Cut::Ears(ears) => self.recut(3 * fan.start..3 * fan.end, &ears),
             }
         }
+    }
+
+    /// Whether the two triangles from `first` on are a quad that is a fan.
+    fn is_plain_quad(&self, first: usize) -> bool {
+        let [[a, b, c], [_, _, d]] = [self.triangles[first], self.triangles[first + 1]];
+        quad_fits([a, b, c, d].map(|v| &self.positions[v as usize]))
     }
 
     /// `corners`: those of a fan, of which these are the triangles instead.

@@ -62,6 +62,14 @@ impl Layout {
         self.num_components * self.component_type.num_bytes()
     }
 
+    /// The values of `attribute`, one of which this is a common layout, in it.
+    pub fn values(self, attribute: Attribute) -> Values {
+        if Self::of(&attribute) == Some(self) {
+            return attribute.values;
+        }
+        self.convert(&attribute).into_owned().values
+    }
+
     /// `attribute`, one of which this is a common layout, in it. Colours without alpha are opaque.
     pub fn convert(self, attribute: &Attribute) -> Cow<'_, Attribute> {
         if Self::of(attribute) == Some(self) {

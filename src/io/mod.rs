@@ -17,6 +17,8 @@
 //! ```
 
 mod atomic;
+// Without glTF there is no place for what a model names.
+#[cfg_attr(not(feature = "gltf"), allow(dead_code))]
 mod beside;
 mod builder;
 #[cfg(feature = "gltf")]

@@ -180,7 +180,10 @@ impl<'a> Gathered<'a> {
         let (column, layout) = match found {
             Some((k, layout)) => (&mut self.columns[k], layout),
             None => {
-                let empty = Attribute { values: attribute.values.emptied(), ..attribute.clone() };
+                let Attribute { semantic, num_components, is_normalized, .. } = attribute;
+                let (name, values) = (attribute.name.clone(), attribute.values.emptied());
+                let empty = Attribute::new(name, semantic, Domain::Vertex, num_components, values);
+                let empty = Attribute { is_normalized, ..empty };
                 self.columns.push(Column { attribute: empty, rows: Vec::new() });
                 let last = self.columns.len() - 1;
                 (&mut self.columns[last], layout)
@@ -198,7 +201,7 @@ impl<'a> Gathered<'a> {
         let first_row = column.attribute.num_entries() as u32;
         column.rows.resize(first, NO_ENTRY);
         column.rows.extend((0..num_vertices as u32).map(|row| first_row + row));
-        column.attribute.values.append(layout.convert(&attribute).into_owned().values);
+        column.attribute.values.append(layout.values(attribute));
         Ok(())
     }
 
