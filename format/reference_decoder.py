@@ -2085,6 +2085,14 @@ def read_materials(payload):
     return document, images
 
 
+def read_metadata(payload):
+    """Texts by their keys."""
+    reader = Reader(payload)
+    pairs = [(string(reader), string(reader)) for _ in range(reader.varint())]
+    require(reader.is_empty() and len(dict(pairs)) == len(pairs), "the metadata")
+    return dict(pairs)
+
+
 # 7.11 Attributes
 
 
@@ -2875,14 +2883,14 @@ def decode(stream):
         elif kind == "c" and rows is None:
             require(weights is None, "a chunk out of order")
             weights = payload
-        elif kind in "dnm" and rows is None:
+        elif kind in "dnmk" and rows is None:
             require(kind not in known, "a chunk out of order")
             known.add(kind)
             if kind == "d":
                 declared = read_attributes(payload)
                 values = [Values(one) for one in declared[0]]
             else:
-                {"n": read_scene, "m": read_materials}[kind](payload)
+                {"n": read_scene, "m": read_materials, "k": read_metadata}[kind](payload)
         elif kind == "H":
             require(grid is None, "a chunk out of order")
             grid = read_grid(payload)

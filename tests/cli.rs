@@ -79,10 +79,76 @@ fn a_grid_that_is_too_coarse_is_said_with_the_bits_that_do() {
 }
 
 #[test]
-fn a_dash_is_no_file() {
+fn meshes_come_from_standard_input_if_their_format_is_said() {
     let workshop = Workshop::new();
-    let error = workshop.fails("encode -", 3);
-    assert!(error.contains("a mesh is not read from standard input"), "{error}");
+    let error = workshop.fails("encode -", 2);
+    assert!(error_line(&error).starts_with("lwc: standard input: say what it is with --format"), "{error}");
+    let expected = workshop.ball_stream();
+    let mesh = fs::read(workshop.path("ball.ply")).unwrap();
+    let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    packer.write_all(&mesh).unwrap();
+    for bytes in [mesh.clone(), packer.finish().unwrap(), zstd::encode_all(&mesh[..], 1).unwrap()] {
+        let output = workshop.run_with_input("encode - --format ply", bytes.clone());
+        assert_eq!((output.stdout, text(output.stderr)), (expected.clone(), String::new()));
+        let line = "compare - ball.ply --format ply";
+        let (report, _) = succeeded(line, workshop.run_with_input(line, bytes));
+        assert!(report.contains("the surfaces are identical"), "{report}");
+    }
+    for line in
+        ["describe - --format ply -o d.csv", "filter - --format ply", "encode - --format ply -o a.lwc"]
+    {
+        succeeded(line, workshop.run_with_input(line, mesh.clone()));
+    }
+    assert_eq!(fs::read(workshop.path("a.lwc")).unwrap(), expected);
+    let error = failed("encode", workshop.run_with_input("encode - --format obj", mesh), 3);
+    assert!(error_line(&error).starts_with("lwc: standard input: line "), "{error}");
+    workshop.fails("encode - ball.ply - --format ply -o x.lwc", 2);
+}
+
+#[test]
+fn several_files_become_one_scene() {
+    let workshop = Workshop::new();
+    workshop.put("small.one.obj", &sphere(1));
+    let error = workshop.fails("encode ball.ply small.one.obj", 2);
+    assert!(error_line(&error).contains("name it with -o"), "{error}");
+    let report =
+        workshop.json("encode ball.ply small.one.obj ball.ply -o all.lwc --lossless --json --verify");
+    assert_eq!(report["inputs"], serde_json::json!(["ball.ply", "small.one.obj", "ball.ply"]));
+    workshop.ok("decode all.lwc -o all.glb");
+    let scene = io::read_scene(workshop.path("all.glb")).unwrap();
+    let names: Vec<&str> = scene.instances.iter().map(|instance| instance.name.as_str()).collect();
+    assert_eq!(names, ["ball", "small.one", "ball"]);
+    let sizes: Vec<usize> = scene.meshes.iter().map(|file| file.mesh.num_triangles()).collect();
+    assert_eq!(sizes, [1280, 80, 1280]);
+    // What is a scene already keeps its names and places.
+    workshop.ok("encode all.glb small.one.obj -o more.lwc");
+    workshop.ok("decode more.lwc -o more.glb");
+    assert_eq!(io::read_scene(workshop.path("more.glb")).unwrap().instances.len(), 4);
+    workshop.ok("encode ball.ply small.one.obj -o one.lwc --merge");
+    workshop.ok("decode one.lwc -o one.glb");
+    let merged = io::read_scene(workshop.path("one.glb")).unwrap();
+    assert_eq!((merged.meshes.len(), merged.meshes[0].mesh.num_triangles()), (1, 1360));
+    workshop.fails("encode ball.ply missing.obj -o x.lwc", 3);
+    workshop.fails("encode small.one.obj ball.ply -o ball.ply", 2);
+}
+
+#[test]
+fn textures_are_counted_and_may_be_left_out() {
+    let workshop = Workshop::new();
+    let obj = "mtllib a.mtl\nusemtl wood\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+    fs::write(workshop.path("a.obj"), obj).unwrap();
+    fs::write(workshop.path("a.mtl"), "newmtl wood\nKd 0.5 0.25 0.125\nmap_Kd wood.png\n").unwrap();
+    fs::write(workshop.path("wood.png"), [&b"\x89PNG\r\n\x1a\n"[..], &[7; 4000]].concat()).unwrap();
+    let (_, stderr) = workshop.ok("encode a.obj");
+    assert!(stderr.contains(" bytes, 4008 of them textures, "), "{stderr}");
+    assert_eq!(workshop.json("encode a.obj --json")["texture_bytes"], 4008);
+    let report = workshop.json("encode a.obj --json --no-textures");
+    assert_eq!(report["texture_bytes"], 0);
+    assert_eq!(left_out(&report), ["textures"]);
+    assert!(report["bytes"].as_u64().unwrap() < 1000);
+    fs::remove_file(workshop.path("wood.png")).unwrap();
+    let (_, stderr) = workshop.ok("encode a.obj");
+    assert!(stderr.contains("not kept: image `wood.png`: "), "{stderr}");
 }
 
 /// The names of all commands.

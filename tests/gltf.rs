@@ -411,7 +411,8 @@ fn materials_and_their_images_are_carried() {
         "extensionsUsed": ["KHR_materials_unlit", "KHR_lights_punctual"],
     }));
     let file = read(&document).unwrap();
-    assert!(file.report.ignored.is_empty(), "{:?}", file.report);
+    let missing = "image `wood.jpg` is another file, and there is no folder to look for it";
+    assert_eq!(file.report.ignored, [missing]);
     assert_eq!(named(&file, "material").values.names().unwrap(), ["paint#2", "paint"]);
     let carried = file.attributes.gltf_materials.as_ref().unwrap();
     assert_eq!(carried.images, [[1.5f32.to_le_bytes(), 2.5f32.to_le_bytes()].concat()]);
@@ -434,6 +435,169 @@ fn materials_and_their_images_are_carried() {
     let mut ply = Vec::new();
     let report = io::write_with_attributes_to(&mut ply, &file.mesh, &file.attributes, Format::Ply).unwrap();
     assert!(report.ignored.contains(&"materials except their names".to_owned()));
+}
+
+#[test]
+fn images_beside_a_document_are_taken_into_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let rest = json!({
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": position }, "material": 0 }] }],
+        "materials": [{ "name": "a", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
+        "textures": [{ "source": 0 }, { "source": 1 }, { "source": 2 }, { "source": 3 }],
+        "images": [{ "uri": "sub/a%20b.png" }, { "uri": "./c.jpg", "name": "c" }, { "uri": "sub/a%20b.png" }, { "uri": "../x.png" }],
+    });
+    let png = b"\x89PNG\r\n\x1a\nrest".to_vec();
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    fs::write(folder.path().join("sub/a b.png"), &png).unwrap();
+    fs::write(folder.path().join("c.jpg"), b"GIF89a").unwrap();
+    let path = folder.path().join("model.gltf");
+    fs::write(&path, model.document(rest).to_string()).unwrap();
+    let file = io::read(&path).unwrap();
+    let carried = file.attributes.gltf_materials.unwrap();
+    assert_eq!(carried.images, [png]);
+    let json: Value = serde_json::from_str(&carried.json).unwrap();
+    let inside = json!({ "bufferView": 0, "mimeType": "image/png", "name": "sub/a b.png" });
+    assert_eq!(
+        json["images"],
+        json!([inside, { "uri": "./c.jpg", "name": "c" }, inside, { "uri": "../x.png" }])
+    );
+    let expected = [
+        "image `./c.jpg` is neither PNG nor JPEG",
+        "image `../x.png` is not a file in the folder of the model",
+    ];
+    assert_eq!(file.report.ignored, expected);
+
+    let file = io::ReadOptions::default().without_textures().read(&path).unwrap();
+    let carried = file.attributes.gltf_materials.unwrap();
+    let json: Value = serde_json::from_str(&carried.json).unwrap();
+    assert_eq!(json["materials"], json!([{ "name": "a", "pbrMetallicRoughness": {} }]));
+    assert!(carried.images.is_empty() && json.get("images").is_none() && json.get("textures").is_none());
+    assert_eq!(file.report.ignored, ["textures"]);
+}
+
+/// What one mesh has as floats another has as integers.
+#[test]
+fn values_of_one_name_have_one_type_in_a_scene() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let floats = model.floats("VEC2", 2, &[0.0, 0.0, 2.0, 0.0, 0.0, 0.5]);
+    let bytes = model.bytes("VEC2", 2, &[0, 0, 255, 0, 0, 51]);
+    model.accessors[bytes]["normalized"] = true.into();
+    let colours = model.floats("VEC3", 3, &[0.5; 9]);
+    let opaque = model.bytes("VEC4", 4, &[255, 0, 51, 102].repeat(3));
+    model.accessors[opaque]["normalized"] = true.into();
+    let turned = model.bytes("VEC3", 3, &[0, 0, 127].repeat(3));
+    model.accessors[turned]["componentType"] = 5120.into();
+    model.accessors[turned]["normalized"] = true.into();
+    let first = json!({ "attributes": { "POSITION": position, "TEXCOORD_0": floats, "COLOR_0": colours, "NORMAL": turned } });
+    let second = json!({ "attributes": { "POSITION": position, "TEXCOORD_0": bytes, "COLOR_0": opaque, "NORMAL": turned } });
+    let check = |file: &MeshFile| {
+        let names: Vec<&str> = file
+            .attributes
+            .list
+            .iter()
+            .map(|a| a.name.as_str())
+            .filter(|n| n.starts_with(char::is_uppercase))
+            .collect();
+        assert_eq!(names.len(), 3, "{names:?}");
+        let texture: Vec<f64> = at_corners(file, "TEXCOORD_0").into_iter().flatten().collect();
+        let fifth = f64::from(0.2f32);
+        assert_eq!(texture, [0.0, 0.0, 2.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, fifth]);
+        let colour: Vec<f64> = at_corners(file, "COLOR_0").into_iter().flatten().collect();
+        assert_eq!(colour[..4], [0.5, 0.5, 0.5, 1.0]);
+        assert_eq!(colour[12..16], [1.0, 0.0, fifth, f64::from(0.4f32)]);
+    };
+    let of_primitives = one_mesh(json!([first, second]));
+    check(&model.read(of_primitives).unwrap());
+    let of_meshes = json!({
+        "meshes": [{ "primitives": [first] }, { "primitives": [second] }],
+        "nodes": [{ "mesh": 0 }, { "mesh": 1, "translation": [5, 0, 0] }],
+        "scenes": [{ "nodes": [0, 1] }],
+    });
+    let document = model.document(of_meshes);
+    check(&read(&document).unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    fs::write(&path, document.to_string()).unwrap();
+    let packed = io::read_scene(&path).unwrap().pack().unwrap();
+    check(&packed);
+    let again = io::Scene::unpack(&packed.mesh, &packed.attributes).unwrap().unwrap();
+    assert_eq!(again.meshes.len(), 2);
+    assert_eq!(named(&again.meshes[1], "TEXCOORD_0").values, Values::F32(vec![0.0, 0.0, 1.0, 0.0, 0.0, 0.2]));
+}
+
+#[test]
+fn instances_on_the_gpu_are_instances() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let places = model.floats("VEC3", 3, &[0.0, 0.0, 0.0, 10.0, 0.0, 0.0, 20.0, 0.0, 0.0]);
+    let turns = model.bytes("VEC4", 4, &[0, 0, 0, 127, 0, 0, 127, 0, 0, 0, 0, 127]);
+    model.accessors[turns]["componentType"] = 5120.into();
+    model.accessors[turns]["normalized"] = true.into();
+    let scales = model.floats("VEC3", 3, &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 4.0]);
+    let ids = model.bytes("SCALAR", 1, &[1, 2, 3]);
+    let two = model.floats("VEC3", 3, &[0.0; 6]);
+    let document = |attributes: Value| {
+        let extension = json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } });
+        let mut rest = one_mesh(json!([{ "attributes": { "POSITION": position } }]));
+        rest["nodes"] =
+            json!([{ "mesh": 0, "name": "tree", "translation": [0, 5, 0], "extensions": extension }]);
+        rest["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+        model.document(rest)
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    let all = json!({ "TRANSLATION": places, "ROTATION": turns, "SCALE": scales, "_ID": ids });
+    fs::write(&path, document(all).to_string()).unwrap();
+    let scene = io::read_scene(&path).unwrap();
+    assert_eq!((scene.meshes.len(), scene.instances.len()), (1, 3));
+    assert!(scene.instances.iter().all(|instance| instance.name == "tree"));
+    assert_eq!(
+        scene.instances[1].transform,
+        [[-1.0, 0.0, 0.0, 10.0], [0.0, -1.0, 0.0, 5.0], [0.0, 0.0, 1.0, 0.0]]
+    );
+    assert_eq!(
+        scene.instances[2].transform,
+        [[2.0, 0.0, 0.0, 20.0], [0.0, 3.0, 0.0, 5.0], [0.0, 0.0, 4.0, 0.0]]
+    );
+    assert_eq!(scene.report.ignored, ["_ID of EXT_mesh_gpu_instancing"]);
+    let refused = |attributes: Value| refusal(read(&document(attributes)));
+    let uneven = json!({ "TRANSLATION": places, "SCALE": two });
+    assert_eq!(refused(uneven), "node 0: EXT_mesh_gpu_instancing with parts of different lengths");
+    assert_eq!(refused(json!({ "TRANSLATION": ids })), "accessor 4: TRANSLATION of 1 numbers");
+    assert_eq!(refused(json!({ "SCALE": 99 })), "accessor 99: does not exist");
+    // Numbers that no buffer has are zeros, as many as one likes.
+    let count = 1_000_000;
+    let many = model.accessor(json!({ "componentType": 5126, "count": count, "type": "VEC3" }));
+    let extension = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": many } } });
+    let mut rest = one_mesh(json!([{ "attributes": { "POSITION": position } }]));
+    rest["nodes"][0]["extensions"] = extension;
+    assert!(refusal(model.read(rest)).contains("out of proportion"));
+}
+
+#[test]
+fn nodes_without_names_have_those_of_ancestors() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let primitives = json!([{ "attributes": { "POSITION": position } }]);
+    let rest = json!({
+        "meshes": [{ "primitives": primitives }, { "primitives": primitives, "name": "wheel" }],
+        "nodes": [
+            { "name": "car", "children": [1, 2, 4] },
+            { "mesh": 0 },
+            { "name": "front", "children": [3] }, { "mesh": 1 },
+            { "mesh": 1 },
+        ],
+        "scenes": [{ "nodes": [0] }],
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    fs::write(&path, model.document(rest).to_string()).unwrap();
+    let scene = io::read_scene(&path).unwrap();
+    let names: Vec<&str> = scene.instances.iter().map(|instance| instance.name.as_str()).collect();
+    assert_eq!(names, ["car", "front", "wheel"]);
 }
 
 #[test]

@@ -242,7 +242,7 @@ fn the_golden_streams_cover_the_syntax() {
             ("refinement last", kinds.last() == Some(&PassKind::Refine)),
             ("padding", rows.iter().enumerate().any(|(i, row)| is_padded(i, row))),
             ("attributes", chunks.iter().any(|c| c.kind == b'd') && chunks.iter().any(|c| c.kind == b'a')),
-            ("unknown chunk", chunks.iter().any(|c| !b"HpdnmLBSRatgixvo".contains(&c.kind))),
+            ("unknown chunk", chunks.iter().any(|c| !b"HpdnmkLBSRatgixvo".contains(&c.kind))),
             ("stitching in the base mesh", chunks.iter().filter(|c| c.kind == b'g').count() == 1),
             ("stitching in splits", chunks.iter().filter(|c| c.kind == b'g').count() > 1),
             ("loose", chunks.iter().any(|c| c.kind == b'i')),
@@ -253,6 +253,7 @@ fn the_golden_streams_cover_the_syntax() {
             ("exact values", chunks.iter().any(|c| c.kind == b'v' && c.payload.starts_with(&[1]))),
             ("order", chunks.iter().any(|c| c.kind == b'o')),
             ("scene", chunks.iter().any(|c| c.kind == b'n')),
+            ("metadata", chunks.iter().any(|c| c.kind == b'k')),
             ("materials in front", is_in_front(&chunks, b'm')),
             ("materials behind", chunks.iter().any(|c| c.kind == b'm') && !is_in_front(&chunks, b'm')),
         ] {
@@ -519,6 +520,7 @@ mod make {
                 list.push(attributed::materials(&mesh));
                 encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
             }),
+            ("metadata", metadata()),
             ("scene", scene()),
             ("late-materials", {
                 let mut chunks = chunks::split(&scene());
@@ -536,6 +538,15 @@ mod make {
 
     fn on(lattice: Lattice) -> GridChoice {
         GridChoice::Lattice(lattice)
+    }
+
+    /// A tetrahedron somewhere on Earth.
+    fn metadata() -> Vec<u8> {
+        let mut attributes = attributed::all(Vec::new());
+        let pair = |key: &str, text: &str| (key.to_owned(), text.to_owned());
+        attributes.metadata = [pair("crs.wkt", "GEOGCS[\"Höhe\"]"), pair("crs.geokeys", "")].into();
+        let options = EncodeOptions::default();
+        encode_with_attributes(&tetrahedron(), &attributes, &options, &|_| {}).unwrap().bytes
     }
 
     /// Two meshes in three places, with a material each.

@@ -32,7 +32,7 @@ pub struct Edit {
     /// The changed mesh, with the vertices and triangles of a level.
     #[arg(value_name = "CHANGED")]
     pub changed: PathBuf,
-    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.zst.
+    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.gz.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     #[command(flatten)]

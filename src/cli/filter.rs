@@ -31,10 +31,10 @@ Examples:
   lwc filter model.ply --gain 8..10=2 -o bold.ply        # levels 8 to 10 twice as strong
   lwc filter scan.ply --denoise -o clean.ply")]
 pub struct Filter {
-    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst).
+    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.gz).
     #[arg(value_name = "MESH")]
     pub input: PathBuf,
-    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.zst.
+    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.gz.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Multiply the details of levels: 7=0, 5..=0 (5 and finer), ..3=2 (up to 3), 2..4=1.5 (2, 3 and 4).

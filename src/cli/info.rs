@@ -128,6 +128,9 @@ fn print(
         writeln!(out, "partition   {partition}")?;
     }
     writeln!(out, "profile     {}", info.profile().name())?;
+    for (key, text) in info.metadata() {
+        writeln!(out, "{key:<11} {}", shown(text))?;
+    }
     passes::print_attributes(&mut *out, info, attribute_bytes)?;
     writeln!(out, "header      {} bytes\n", header_bytes(info))?;
     passes::print(out, info, present)
@@ -152,6 +155,21 @@ fn print_grid(out: &mut dyn Write, info: &StreamInfo) -> io::Result<()> {
 fn lattice_to_json(info: &StreamInfo) -> Option<Value> {
     let Lattice { origin, step } = info.lattice()?;
     Some(json!({ "origin": origin, "step": step, "offset": info.lattice_offset() }))
+}
+
+fn metadata(info: &StreamInfo) -> serde_json::Map<String, Value> {
+    info.metadata().iter().map(|(key, text)| (key.clone(), text.as_str().into())).collect()
+}
+
+/// The beginning of a text, on one line.
+fn shown(text: &str) -> String {
+    const MAX_CHARS: usize = 200;
+    let clean = |c: char| if c.is_control() { ' ' } else { c };
+    let mut shown: String = text.chars().take(MAX_CHARS).map(clean).collect();
+    if text.chars().nth(MAX_CHARS).is_some() {
+        shown.push('…');
+    }
+    shown
 }
 
 fn to_json(info: &StreamInfo, attribute_bytes: &[u64], name: &str, present: u64) -> Value {
@@ -179,6 +197,7 @@ fn to_json(info: &StreamInfo, attribute_bytes: &[u64], name: &str, present: u64)
         "growth": window.map(|w| w.2),
         "partition": partition(info),
         "profile": info.profile().name(),
+        "metadata": metadata(info),
         "attributes": passes::attributes_to_json(info, attribute_bytes),
         "passes": passes::to_json(info, present),
         "trailing": passes::trailing_to_json(info, present),

@@ -9,6 +9,7 @@ use crate::bitstream::pass_table::{self, BadTable};
 use crate::bitstream::profile::Profile;
 use crate::mesh::{ComponentType, Domain, SceneTable, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
+use std::sync::Arc;
 
 /// What a stream says about itself before its first pass.
 #[derive(Clone, Debug)]
@@ -20,6 +21,7 @@ pub struct StreamInfo {
     pub(super) attributes: Vec<AttributeInfo>,
     pub(super) trailing: Vec<TrailingInfo>,
     pub(super) scene: Option<SceneTable>,
+    pub(super) metadata: Arc<[(String, String)]>,
     pub(super) work: u64,
 }
 
@@ -231,6 +233,11 @@ impl StreamInfo {
     /// The scene whose meshes these are, if it is one: see [`Attributes::scene`](crate::mesh::Attributes::scene).
     pub fn scene(&self) -> Option<&SceneTable> {
         self.scene.as_ref()
+    }
+
+    /// What else is known of the whole: see [`Attributes::metadata`](crate::mesh::Attributes::metadata).
+    pub fn metadata(&self) -> &[(String, String)] {
+        &self.metadata
     }
 
     /// What follows the last pass, in order.

@@ -93,6 +93,9 @@ fn write_attributes(bytes: &mut Vec<u8>, quantized: &Quantized, values: &[Vec<u8
     if let Some(scene) = &quantized.scene {
         chunk::write(bytes, kind::SCENE, scene);
     }
+    if let Some(metadata) = &quantized.metadata {
+        chunk::write(bytes, kind::METADATA, metadata);
+    }
     if let Some(materials) = materials_in_front(quantized) {
         chunk::write(bytes, kind::MATERIALS, materials);
     }

@@ -18,8 +18,11 @@ pub struct MeshFile {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ReadReport {
-    /// Faces of four or more corners that were cut into the fan of their first corner.
+    /// Faces of four or more corners that were cut into triangles.
     pub polygons_triangulated: usize,
+    /// Of these, the ones whose triangles overlap: they cross themselves, or have thousands of corners and are not
+    /// convex. They were cut into the fan of their first corner.
+    pub polygons_overlapping: usize,
     /// Faces of fewer than three corners, left out.
     pub faces_skipped: usize,
     /// STL and glTF: corners or vertices that were joined with an earlier one at exactly the same place.

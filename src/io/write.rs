@@ -4,7 +4,7 @@ use super::atomic::write_atomic;
 #[cfg(feature = "gltf")]
 use super::error::ReadError;
 use super::error::WriteError;
-use super::format::{Format, format_and_compression};
+use super::format::{Compression, Format, format_and_compression};
 #[cfg(feature = "gltf")]
 use super::gltf;
 #[cfg(feature = "gltf")]
@@ -14,10 +14,11 @@ use super::mesh_file::WriteReport;
 use super::scene::Scene;
 use super::{obj, ply, stl};
 use crate::mesh::{Attribute, Attributes, Domain, Semantic, TriMesh, Values};
+use flate2::write::GzEncoder;
 use std::io::Write;
 use std::path::Path;
 
-/// Writes a mesh file; the ending of `path` says which format, a further `.zst` compresses it.
+/// Writes a mesh file; the ending of `path` says which format, a further `.gz` or `.zst` compresses it.
 ///
 /// The file appears complete or not at all (see [`write_atomic`]).
 ///
@@ -45,16 +46,24 @@ fn write_file(
     write: impl FnOnce(&mut dyn Write, Format) -> Result<WriteReport, WriteError>,
 ) -> Result<WriteReport, WriteError> {
     let known = format_and_compression(path).filter(|(format, _)| format.is_written());
-    let (format, is_compressed) = known.ok_or(WriteError::UnknownEnding)?;
+    let (format, compression) = known.ok_or(WriteError::UnknownEnding)?;
     let mut report = WriteReport::default();
     write_atomic(path, |out| {
-        if is_compressed {
-            let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
-            report = write(&mut compressor, format)?;
-            compressor.finish()?;
-        } else {
-            report = write(out, format)?;
-        }
+        report = match compression {
+            Some(Compression::Zstd) => {
+                let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
+                let report = write(&mut compressor, format)?;
+                compressor.finish()?;
+                report
+            }
+            Some(Compression::Gzip) => {
+                let mut compressor = GzEncoder::new(out, flate2::Compression::default());
+                let report = write(&mut compressor, format)?;
+                compressor.finish()?;
+                report
+            }
+            None => write(out, format)?,
+        };
         Ok::<(), WriteError>(())
     })?;
     Ok(report)
@@ -122,7 +131,7 @@ pub fn write_with_attributes_to(
         let misfit = |error| WriteError::Unrepresentable { message: misfit(error) };
         attribute.validate(mesh).map_err(misfit)?;
     }
-    let mut report = match format {
+    let report = match format {
         Format::Obj => obj::write(&mut out, mesh, attributes)?,
         Format::Ply => ply::write(&mut out, mesh, attributes)?,
         Format::Stl => {
@@ -140,10 +149,25 @@ pub fn write_with_attributes_to(
             return Err(WriteError::Unrepresentable { message });
         }
     };
-    if attributes.gltf_materials.is_some() {
-        report.ignored.push("materials except their names".to_owned());
+    Ok(WriteReport { ignored: [report.ignored, others_left_out(attributes, format)].concat(), ..report })
+}
+
+/// What a format that is not glTF leaves out of what the mesh has once for all.
+fn others_left_out(attributes: &Attributes, format: Format) -> Vec<String> {
+    let is_named = match format {
+        Format::Obj => !attributes.material_libraries.is_empty(),
+        Format::Ply => attributes.list.iter().any(|attribute| attribute.name == ply::TEXTURE_FILE),
+        _ => false,
+    };
+    let mut left_out = Vec::new();
+    if attributes.gltf_materials.is_some() && !is_named {
+        left_out.push("materials except their names".to_owned());
     }
-    Ok(report)
+    // glTF keeps both.
+    if format != Format::Ply {
+        left_out.extend(attributes.metadata.iter().map(|(key, _)| key.clone()));
+    }
+    left_out
 }
 
 /// Writes `mesh` as PLY with a colour per vertex (properties `red`, `green` and `blue`), else as

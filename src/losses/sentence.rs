@@ -46,7 +46,9 @@ impl Loss {
                 format!("{subject}: {} made up where there was none", self.counted("value"))
             }
             LossKind::NamesChanged => format!("{subject}: {} changed", self.counted("name")),
-            LossKind::PolygonsTriangulated => format!("{} cut into triangles", self.counted("polygon")),
+            LossKind::PolygonsTriangulated => {
+                format!("{} cut into triangles{}", self.counted("polygon"), behind(subject))
+            }
             LossKind::VerticesJoined => format!("{} joined with others", self.counted("vertex")),
             LossKind::VerticesSplit => format!("{} repeated", self.counted("vertex")),
             LossKind::Reordered => "vertices and triangles in another order".to_owned(),
@@ -77,6 +79,10 @@ impl Loss {
 
 fn to(subject: &str) -> String {
     if subject.is_empty() { String::new() } else { format!(" to {subject}") }
+}
+
+fn behind(subject: &str) -> String {
+    if subject.is_empty() { String::new() } else { format!(" {subject}") }
 }
 
 fn in_parentheses(subject: &str) -> String {

@@ -532,6 +532,21 @@ const char *lwc_mesh_attribute_name(const struct LwcMesh *mesh,
                                     size_t index,
                                     size_t entry);
 
+// How many texts a mesh has besides its attributes, such as its coordinate reference system.
+//
+// # Safety
+// `mesh` is null, or was handed out by this library and has not been freed.
+size_t lwc_mesh_num_metadata(const struct LwcMesh *mesh);
+
+// One of these texts and its key (`crs.wkt`), valid until the mesh is freed; LWC_STATUS_NOTHING_TO_DO if there is none.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `key` and `text` can be written to.
+enum LwcStatus lwc_mesh_metadata(const struct LwcMesh *mesh,
+                                 size_t index,
+                                 const char **key,
+                                 const char **text);
+
 // Says more about the last call of this thread that failed; valid until the next one that does.
 const char *lwc_last_error(void);
 
@@ -629,6 +644,21 @@ enum LwcStatus lwc_mesh_attribute_indices(const struct LwcMesh *mesh,
 const char *lwc_mesh_attribute_name(const struct LwcMesh *mesh,
                                     size_t index,
                                     size_t entry);
+
+// How many texts a mesh has besides its attributes, such as its coordinate reference system.
+//
+// # Safety
+// `mesh` is null, or was handed out by this library and has not been freed.
+size_t lwc_mesh_num_metadata(const struct LwcMesh *mesh);
+
+// One of these texts and its key (`crs.wkt`), valid until the mesh is freed; LWC_STATUS_NOTHING_TO_DO if there is none.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `key` and `text` can be written to.
+enum LwcStatus lwc_mesh_metadata(const struct LwcMesh *mesh,
+                                 size_t index,
+                                 const char **key,
+                                 const char **text);
 
 // Says more about the last call of this thread that failed; valid until the next one that does.
 const char *lwc_last_error(void);

@@ -182,6 +182,9 @@ fn info_dict<'py>(py: Python<'py>, info: &StreamInfo) -> PyResult<Bound<'py, PyD
     dict.set_item("passes", passes?)?;
     let attributes: PyResult<Vec<_>> = info.attributes().iter().map(|one| attribute_dict(py, one)).collect();
     dict.set_item("attributes", attributes?)?;
+    let metadata = PyDict::new(py);
+    info.metadata().iter().try_for_each(|(key, text)| metadata.set_item(key, text))?;
+    dict.set_item("metadata", metadata)?;
     Ok(dict)
 }
 

@@ -8,7 +8,7 @@ mod unit;
 
 use super::bar::Part;
 use super::exit::Failure;
-use super::input::{read_for_stream, read_terrain};
+use super::input::{name_of, read_terrain};
 use super::input_file::{self, holds_stream};
 use super::losses;
 use super::output::Destination;
@@ -29,8 +29,11 @@ use std::time::Instant;
 /// Reads, encodes, verifies, writes, reports.
 pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let destination = args.destination();
-    check_input(&args.input).with_context(|| args.input.display().to_string())?;
-    destination.check(Some(&args.input), false)?;
+    args.check_output()?;
+    for input in args.inputs() {
+        check_input(input).with_context(|| name_of(input))?;
+        destination.check(Some(input), false)?;
+    }
     check_ending(&destination).with_context(|| destination.name())?;
     let asked = args.grid.asked(&args.input)?;
     let start = Instant::now();
@@ -40,7 +43,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         bar.split([("reading", 5.0), ("encoding", 85.0), ("verifying", verifying)]);
     let mut file = match args.terrain.options() {
         Some(options) => read_terrain(&args.input, &options, &args.reading, reading, ui)?,
-        None => read_for_stream(&args.input, args.merge, &args.reading, reading, ui)?,
+        None => args.stream_input().read(reading, ui)?,
     };
     let mut losses = file.report.losses();
     if args.no_attributes {
@@ -48,7 +51,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     }
     let read_seconds = start.elapsed().as_secs_f64();
 
-    let name = args.input.display().to_string();
+    let name = args.input_name();
     let start = Instant::now();
     let options = args.options(asked.choice(file.attributes.scene.as_ref()));
     let (encoded, options) = encode(&file, args, options, encoding).with_context(|| name.clone())?;
@@ -136,9 +139,10 @@ fn drop_attributes(file: &mut MeshFile) -> Losses {
     let attributes = std::mem::take(&mut file.attributes);
     let names = attributes.list.iter().map(|attribute| attribute.name.clone());
     let libraries = attributes.material_libraries.first().map(|_| "mtllib".to_owned());
+    let metadata = attributes.metadata.iter().map(|(key, _)| key.clone());
     let materials = attributes.gltf_materials.map(|_| "materials".to_owned());
     let dropped = |name| Loss::new(Stage::Encoding, LossKind::Dropped, name).requested();
-    names.chain(libraries).chain(materials).map(dropped).collect()
+    names.chain(libraries).chain(metadata).chain(materials).map(dropped).collect()
 }
 
 /// With `--lossless` even these are kept, and other programs may choke on them.

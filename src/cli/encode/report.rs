@@ -33,7 +33,7 @@ impl Report<'_> {
             let to_file = self.destination != Destination::Stdout;
             let out: Box<dyn Write> =
                 if to_file { Box::new(io::stdout().lock()) } else { Box::new(io::stderr()) };
-            print_json(out, &self.to_json())?;
+            print_json(out, &self.with_inputs(self.to_json()))?;
         } else if self.destination != Destination::Stdout || ui.is_verbose() {
             ui.say(&self.summary());
             if let Some(usual) = losses::usual(&self.losses) {
@@ -50,9 +50,16 @@ impl Report<'_> {
         self.encoded.bytes.len() as u64
     }
 
-    /// Bytes of the input file as it is, compressed or not.
+    /// Bytes of the input files as they are, compressed or not.
     fn input_bytes(&self) -> Option<u64> {
-        Some(std::fs::metadata(&self.args.input).ok()?.len()).filter(|&bytes| bytes > 0)
+        let size = |path| Some(std::fs::metadata(path).ok()?.len());
+        self.args.inputs().map(size).sum::<Option<u64>>().filter(|&bytes| bytes > 0)
+    }
+
+    /// Bytes of the images that are in the stream.
+    fn texture_bytes(&self) -> usize {
+        let materials = self.file.attributes.gltf_materials.as_ref();
+        materials.map_or(0, |materials| materials.images.iter().map(Vec::len).sum())
     }
 
     fn ratio(&self) -> Option<f64> {
@@ -64,11 +71,15 @@ impl Report<'_> {
         let (info, bytes, repair) = (&self.encoded.info, self.num_bytes(), &self.encoded.repair);
         let finest = info.passes().last();
         let vertices = finest.map_or(0, |p| p.vertices as usize - repair.repeated_vertices);
-        let ratio = self.ratio().map(|r| format!(", {:.1} % of {}", 100.0 * r, self.args.input.display()));
+        let ratio = self.ratio().map(|r| format!(", {:.1} % of {}", 100.0 * r, self.args.input_name()));
         let steps = || format!(": steps of {}", grid_report::step(self.encoded.grid_error.step));
         let grid = (!self.args.lossless).then(steps);
+        let textures = match self.texture_bytes() {
+            0 => String::new(),
+            bytes => format!(", {bytes} of them textures"),
+        };
         format!(
-            "{}: {}, {}, {} on the base mesh, {} bits{}\n{bytes} bytes, {:.2} bits per vertex{}, {:.2} s{}",
+            "{}: {}, {}, {} on the base mesh, {} bits{}\n{bytes} bytes{textures}, {:.2} bits per vertex{}, {:.2} s{}",
             self.destination.name(),
             counted(vertices, "vertex", "vertices"),
             counted(finest.map_or(0, |p| p.triangles as usize), "triangle", "triangles"),
@@ -80,6 +91,13 @@ impl Report<'_> {
             self.read_seconds + self.encode_seconds,
             self.verified.as_ref().map_or(String::new(), |what| format!("\nverified: {what}")),
         )
+    }
+
+    /// Adds what was read.
+    fn with_inputs(&self, mut json: Value) -> Value {
+        json["inputs"] = self.args.inputs().map(|input| input.display().to_string()).collect();
+        json["texture_bytes"] = self.texture_bytes().into();
+        json
     }
 
     fn to_json(&self) -> Value {

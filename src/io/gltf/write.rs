@@ -273,6 +273,8 @@ struct Writer {
     lists: Map<String, Value>,
     /// Materials are identified by their names.
     material_of: HashMap<String, usize>,
+    /// What else is known of the whole.
+    metadata: Map<String, Value>,
     report: WriteReport,
 }
 
@@ -302,6 +304,8 @@ impl Writer {
                 format!("vertex {} is too far away for the float32 coordinates of glTF", vertex + 1);
             return Err(unrepresentable(message));
         }
+        let metadata = attributes.metadata.iter();
+        self.metadata.extend(metadata.map(|(key, text)| (key.clone(), text.as_str().into())));
         let (columns, report) = columns(attributes);
         self.report.ignored.extend(report.ignored);
         let split = Split::new(mesh, &columns)?;
@@ -328,7 +332,7 @@ impl Writer {
         roots: &[usize],
         container: Container,
     ) -> Result<WriteReport, WriteError> {
-        let Self { mut buffer, views, accessors, meshes, materials, lists, mut report, .. } = self;
+        let Self { mut buffer, views, accessors, meshes, materials, lists, metadata, mut report, .. } = self;
         for names in [&mut report.ignored, &mut report.zeroed] {
             let mut known = HashSet::new();
             names.retain(|name| known.insert(name.clone()));
@@ -340,6 +344,9 @@ impl Writer {
             "bufferViews": views,
             "accessors": accessors,
         });
+        if !metadata.is_empty() {
+            document["asset"]["extras"] = metadata.into();
+        }
         // Lists may not be empty.
         if !roots.is_empty() {
             document["scene"] = 0.into();

@@ -1,6 +1,9 @@
 //! Writing PLY: binary, little-endian.
 
-use super::columns::{property_names, scalar_name};
+use super::{
+    columns::{property_names, scalar_name},
+    textures::TEXTURE_FILE,
+};
 use crate::{
     io::{WriteReport, texture::oriented},
     mesh::{Attribute, Attributes, ComponentType, Domain, Semantic, TriMesh, Values},
@@ -21,10 +24,16 @@ pub(in crate::io) fn write(
     let coordinate = if is_float { "float" } else { "double" };
     // Many readers know `int` only; it reaches far enough nearly always.
     let index = if mesh.num_vertices() <= i32::MAX as usize { "int" } else { "uint" };
+    out.write_all(b"ply\nformat binary_little_endian 1.0\n")?;
+    for name in layout.textures {
+        writeln!(out, "comment {TEXTURE_FILE} {}", one_line(name))?;
+    }
+    for (key, text) in &*attributes.metadata {
+        writeln!(out, "comment {} {}", one_line(key), one_line(text))?;
+    }
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\n\
-         element vertex {}\nproperty {coordinate} x\nproperty {coordinate} y\nproperty {coordinate} z\n",
+        "element vertex {}\nproperty {coordinate} x\nproperty {coordinate} y\nproperty {coordinate} z\n",
         mesh.num_vertices(),
     )?;
     declare(out, &layout.of_vertices)?;
@@ -58,6 +67,11 @@ pub(in crate::io) fn write(
     Ok(report)
 }
 
+/// A comment ends where its line ends.
+fn one_line(text: &str) -> String {
+    text.replace(['\n', '\r'], " ")
+}
+
 /// Which attribute goes where.
 #[derive(Default)]
 struct Layout<'a> {
@@ -65,6 +79,8 @@ struct Layout<'a> {
     of_faces: Vec<Cow<'a, Attribute>>,
     /// Texture coordinates of corners: a list in each face.
     wedge: Option<Cow<'a, Attribute>>,
+    /// Files of textures.
+    textures: &'a [String],
 }
 
 impl<'a> Layout<'a> {
@@ -78,6 +94,9 @@ impl<'a> Layout<'a> {
                 && !number_type(attribute).is_integer();
             let came_as_wedge = attribute.name == "texcoord" && may_be_wedge;
             match attribute.domain {
+                _ if attribute.name == TEXTURE_FILE && attribute.values.names().is_some() => {
+                    layout.textures = attribute.values.names().unwrap_or_default();
+                }
                 _ if attribute.values.names().is_some() => report.ignored.push(attribute.name.clone()),
                 Domain::Vertex => layout.of_vertices.push(written_as(Cow::Borrowed(attribute))),
                 Domain::Triangle => layout.of_faces.push(written_as(Cow::Borrowed(attribute))),

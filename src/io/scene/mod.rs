@@ -1,7 +1,9 @@
 //! Files of several meshes.
 
+mod append;
 mod merge;
 mod pack;
+mod unify;
 
 pub use pack::SCENE_MESH;
 

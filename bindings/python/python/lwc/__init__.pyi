@@ -51,6 +51,7 @@ class Info(TypedDict):
     profile: str
     passes: list[Pass]
     attributes: list[AttributeInfo]
+    metadata: dict[str, str]
 
 def descriptors() -> list[str]: ...
 def encode(
