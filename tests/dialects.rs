@@ -328,7 +328,10 @@ fn concave_polygons_are_cut_without_leaving_them() {
         let areas = doubled_areas(&file.mesh);
         assert_eq!((areas.len(), areas[..5].iter().sum::<f64>()), (7, 6.0), "{start}");
         // Two corners see all others, with three of them on a line: the fan has a triangle without area.
-        assert!(areas.iter().all(|&area| area > 0.0 || (area == 0.0 && matches!(start, 0 | 6))), "{start}: {areas:?}");
+        assert!(
+            areas.iter().all(|&area| area > 0.0 || (area == 0.0 && matches!(start, 0 | 6))),
+            "{start}: {areas:?}"
+        );
         assert_eq!(file.report.polygons_triangulated, 2);
         assert_eq!(file.report.polygons_overlapping, 0);
         // Corners keep what they have.
