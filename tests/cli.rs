@@ -148,7 +148,7 @@ fn textures_are_counted_and_may_be_left_out() {
     assert!(report["bytes"].as_u64().unwrap() < 1000);
     fs::remove_file(workshop.path("wood.png")).unwrap();
     let (_, stderr) = workshop.ok("encode a.obj");
-    assert!(stderr.contains("not kept: image `wood.png`: "), "{stderr}");
+    assert!(stderr.contains("left out: image `wood.png`: "), "{stderr}");
 }
 
 /// The names of all commands.
