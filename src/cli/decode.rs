@@ -2,13 +2,15 @@
 
 use super::args::LimitArgs;
 use super::exit::Failure;
-use super::output::{Destination, say_written, size_of, warn_left_out, with_ending};
+use super::output::{Destination, say_written, size_of, with_ending};
 use super::quantity;
 use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, note_if_no_level, reached};
 use super::ui::Ui;
+use super::writing::{Writing, say_losses};
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use lwc::io::{Format, Scene, WriteError, WriteReport};
+use lwc::io::{Format, Scene, WriteError, WriteOptions};
+use lwc::losses::Losses;
 use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
 use std::path::{Path, PathBuf};
@@ -44,6 +46,8 @@ pub struct Decode {
     #[arg(long)]
     pub salvage: bool,
     #[command(flatten)]
+    pub writing: Writing,
+    #[command(flatten)]
     pub limits: LimitArgs,
 }
 
@@ -73,9 +77,10 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     if destination == Destination::Stdout {
         bar.hide();
     }
-    let report = write(&destination, format, &mesh, &attributes)?;
+    let options = args.writing.options_for_decoded(&decoder);
+    let losses = write(&destination, format, &mesh, &attributes, &options)?;
     drop(bar);
-    warn_left_out(&destination, &report, ui);
+    say_losses(&destination, &losses, ui);
     let how_far = reached(&decoder).unwrap_or_default();
     say_written(&destination, &format!("{}, {how_far}", size_of(&mesh)), ui);
     Ok(())
@@ -151,24 +156,25 @@ fn write(
     format: Format,
     mesh: &TriMesh,
     attributes: &Attributes,
-) -> anyhow::Result<WriteReport> {
+    options: &WriteOptions,
+) -> anyhow::Result<Losses> {
     let scene = Scene::unpack(mesh, attributes).with_context(|| destination.name())?;
     if let Destination::File(path) = destination {
         let written = match &scene {
-            Some(scene) => lwc::io::write_scene(path, scene),
-            None => lwc::io::write_with_attributes(path, mesh, attributes),
+            Some(scene) => options.write_scene(path, scene),
+            None => options.write(path, mesh, attributes),
         };
         return written.with_context(|| destination.name());
     }
-    let mut report = WriteReport::default();
+    let mut losses = Losses::default();
     destination.write(|out| {
-        report = match &scene {
-            Some(scene) => lwc::io::write_scene_to(out, scene, format)?,
-            None => lwc::io::write_with_attributes_to(out, mesh, attributes, format)?,
+        losses = match &scene {
+            Some(scene) => options.write_scene_to(out, scene, format)?,
+            None => options.write_to(out, mesh, attributes, format)?,
         };
         Ok::<(), WriteError>(())
     })?;
-    Ok(report)
+    Ok(losses)
 }
 
 fn format_parser() -> impl TypedValueParser<Value = Format> {

@@ -30,3 +30,4 @@ mod stream;
 pub mod ui;
 mod verify;
 pub mod view;
+mod writing;

@@ -169,6 +169,17 @@ impl Loss {
         }
     }
 
+    /// Whether nobody needs a warning; see [`LossKind::is_usual`]. Positions that a file format rounds by more than a
+    /// hundredth of an edge are not usual.
+    pub fn is_usual(&self) -> bool {
+        /// In lengths of edges.
+        const MOST: f64 = 0.01;
+        let is_coarse = self.stage == Stage::Writing
+            && self.kind == LossKind::PositionsRounded
+            && self.largest_error_in_edges.is_some_and(|edges| edges > MOST);
+        self.kind.is_usual() && !is_coarse
+    }
+
     /// With a count of what is concerned.
     #[must_use]
     pub fn count(self, count: usize) -> Self {
@@ -219,9 +230,9 @@ impl Losses {
         later.list.into_iter().for_each(|loss| self.push(loss));
     }
 
-    /// Those that somebody should be told of even if all went as usual; see [`LossKind::is_usual`].
+    /// Those that somebody should be told of even if all went as usual; see [`Loss::is_usual`].
     pub fn unusual(&self) -> impl Iterator<Item = &Loss> {
-        self.list.iter().filter(|loss| !loss.kind.is_usual())
+        self.list.iter().filter(|loss| !loss.is_usual())
     }
 
     /// All of them.
@@ -268,6 +279,13 @@ mod tests {
         assert_eq!(losses.len(), 2);
         losses.append([loss(), Loss::new(Stage::Writing, LossKind::Reordered, "")].into_iter().collect());
         assert_eq!((losses.len(), losses.unusual().count()), (3, 2));
+    }
+
+    #[test]
+    fn a_file_that_moves_vertices_far_is_not_usual() {
+        let rounded = |stage, edges| Loss::new(stage, LossKind::PositionsRounded, "").in_edges(edges);
+        assert!(rounded(Stage::Writing, 0.001).is_usual() && rounded(Stage::Encoding, 0.1).is_usual());
+        assert!(!rounded(Stage::Writing, 0.1).is_usual());
     }
 
     #[test]

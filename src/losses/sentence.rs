@@ -44,11 +44,14 @@ impl Loss {
             LossKind::IdentifiersChanged => format!("{}identifiers of {subject} changed", self.counts()),
             LossKind::ValuesConverted => format!("{}values of {subject} converted", self.counts()),
             LossKind::ValuesFilled => format!("{subject}: {}elements without value have one", self.counts()),
+            LossKind::NamesChanged if self.count.is_none() => format!("written by another name: {subject}"),
             LossKind::NamesChanged => format!("{}names of {subject} changed", self.counts()),
             LossKind::PolygonsTriangulated => format!("{}polygons cut into triangles", self.counts()),
             LossKind::VerticesJoined => format!("{}vertices joined with others", self.counts()),
             LossKind::VerticesSplit => format!("{}vertices repeated", self.counts()),
-            LossKind::Reordered => "vertices and triangles in another order".to_owned(),
+            LossKind::Reordered => {
+                format!("vertices and triangles in another order{}", in_parentheses(subject))
+            }
             LossKind::Coarser => format!("coarser than the whole stream{}", in_parentheses(subject)),
         }
     }
@@ -108,6 +111,7 @@ mod tests {
                 "positions rounded to float32, by at most 0.25",
             ),
             (loss(LossKind::ValuesRounded, "vn").at_most(12.34), "values of vn rounded, by at most 12"),
+            (loss(LossKind::NamesChanged, "heat (_heat)"), "written by another name: heat (_heat)"),
             (loss(LossKind::Coarser, "level 3 of 9"), "coarser than the whole stream (level 3 of 9)"),
         ] {
             assert_eq!(loss.to_string(), sentence);

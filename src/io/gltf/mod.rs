@@ -5,7 +5,6 @@
 //! looks up indices before it has checked them: a damaged file makes it panic.
 
 mod accessor;
-mod instances;
 mod json;
 mod materials;
 mod mesh;
@@ -14,7 +13,7 @@ mod nulls;
 mod source;
 mod write;
 
-pub(super) use write::{Container, write, write_scene};
+pub(super) use write::{Container, Plan};
 
 use super::{Place, ReadError, Scene};
 use accessor::Store;

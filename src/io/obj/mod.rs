@@ -7,12 +7,13 @@
 
 mod colours;
 mod corner_tables;
+mod layout;
 mod references;
 mod rows;
 mod statements;
 mod write;
 
-pub(super) use write::write;
+pub(super) use write::Plan;
 
 use super::{
     MeshFile, Place, ReadError,

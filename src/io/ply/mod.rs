@@ -11,10 +11,11 @@
 mod body;
 mod columns;
 mod header;
+mod layout;
 mod scalar;
 mod write;
 
-pub(super) use write::write;
+pub(super) use write::Plan;
 
 use super::{MeshFile, ReadError, builder::MeshBuilder, builder::fan, source::Source};
 use crate::mesh::{Attribute, Domain, NO_ENTRY, Semantic, Values};

@@ -46,6 +46,13 @@ impl Scalar {
         }
     }
 
+    /// A number of a text as the type has it: that of `float` is a float32, if it is not beyond all of them.
+    #[inline]
+    pub fn rounded(self, number: f64) -> f64 {
+        let float = number as f32;
+        if self.kept == ComponentType::F32 && float.is_finite() { f64::from(float) } else { number }
+    }
+
     /// Whether an integer is one of the type it is kept in.
     #[inline]
     pub fn fits(self, number: f64) -> bool {

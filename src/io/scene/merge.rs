@@ -2,7 +2,11 @@
 
 use super::Scene;
 use crate::{
-    io::{MeshFile, ReadError, builder::MeshBuilder},
+    io::{
+        MeshFile, ReadError,
+        builder::MeshBuilder,
+        convert::{append_table, means_the_same},
+    },
     mesh::{Attribute, Domain, IDENTITY, Instance, NO_ENTRY, Semantic, Values},
 };
 use std::collections::HashMap;
@@ -29,7 +33,7 @@ impl Scene {
             return Ok(file);
         }
         self.check_size()?;
-        let mut merger = Merger::new(&self);
+        let mut merger = Merger { joins_types: true, ..Merger::new(&self) };
         let mut is_used = vec![false; self.meshes.len()];
         for instance in &self.instances {
             let motion = match instance.transform {
@@ -92,6 +96,8 @@ impl Motion {
 pub(super) struct Merger {
     builder: MeshBuilder,
     columns: Vec<Column>,
+    /// Normals, texture coordinates and colours of one name are one attribute, whatever their types.
+    joins_types: bool,
 }
 
 /// An attribute of all instances, by corners or triangles: an instance may have a seam where another has none.
@@ -107,7 +113,7 @@ impl Column {
     fn append(&mut self, other: &Attribute) -> Vec<u32> {
         let first = self.attribute.num_entries() as u32;
         let Values::Names(known) = &mut self.attribute.values else {
-            self.attribute.values.append(other.values.clone());
+            append_table(&mut self.attribute, other);
             return (0..other.num_entries() as u32).map(|row| first + row).collect();
         };
         let mut row = |name: &String| {
@@ -125,7 +131,7 @@ impl Merger {
         let mut builder = MeshBuilder::for_file(scene.num_bytes);
         builder.report = scene.report.clone();
         builder.attributes.gltf_materials.clone_from(&scene.gltf_materials);
-        Self { builder, columns: Vec::new() }
+        Self { builder, columns: Vec::new(), joins_types: false }
     }
 
     /// Adds a mesh; `name` is for errors.
@@ -154,6 +160,7 @@ impl Merger {
         for attribute in &attributes.list {
             let turned;
             let attribute = match motion {
+                Motion::Affine(transform) if is_translation(&transform) => attribute,
                 Motion::Affine(transform) if attribute.semantic == Semantic::Normal => {
                     turned = turned_normals(attribute, &transform);
                     &turned
@@ -177,14 +184,16 @@ impl Merger {
         corners: [usize; 3],
     ) -> Result<(), ReadError> {
         let domain = if attribute.domain == Domain::Triangle { Domain::Triangle } else { Domain::Corner };
+        let joins_types = self.joins_types;
         let is_like = |column: &Column| {
             let known = &column.attribute;
+            let is_of_type = known.num_components == attribute.num_components
+                && known.is_normalized == attribute.is_normalized
+                && known.values.component_type() == attribute.values.component_type();
             known.name == attribute.name
                 && known.semantic == attribute.semantic
                 && known.domain == domain
-                && known.num_components == attribute.num_components
-                && known.is_normalized == attribute.is_normalized
-                && known.values.component_type() == attribute.values.component_type()
+                && (is_of_type || (joins_types && means_the_same(known, attribute)))
         };
         let known = self.columns.iter().position(is_like).unwrap_or_else(|| {
             let empty = attribute.values.emptied();
@@ -236,6 +245,11 @@ impl Merger {
         }
         Ok(file)
     }
+}
+
+/// Directions stay as they are then, bit for bit.
+fn is_translation(transform: &[[f64; 4]; 3]) -> bool {
+    transform.iter().zip(&IDENTITY).all(|(row, identity)| row[..3] == identity[..3])
 }
 
 fn determinant([[a, b, c, _], [d, e, f, _], [g, h, i, _]]: &[[f64; 4]; 3]) -> f64 {
