@@ -603,14 +603,58 @@ fn the_whole_stream_is_the_mesh_on_the_grid() {
 
     let info = workshop.json("info ball.lwc --json");
     let step = info["step"].as_f64().unwrap();
-    for p in decoded.positions() {
-        for (axis, x) in p.iter().enumerate() {
-            let cell = (x - info["origin"][axis].as_f64().unwrap()) / step;
-            assert!((cell - cell.round()).abs() < 1e-6 && (-0.5..4095.5).contains(&cell), "{cell}");
+    workshop.ok("decode ball.lwc -o double.obj --position-type double");
+    for (mesh, most) in [(&decoded, 0.125), (&workshop.mesh("double.obj"), 1e-6)] {
+        for p in mesh.positions() {
+            for (axis, x) in p.iter().enumerate() {
+                let cell = (x - info["origin"][axis].as_f64().unwrap()) / step;
+                assert!((cell - cell.round()).abs() < most && (-0.5..4095.5).contains(&cell), "{cell}");
+            }
         }
     }
     let distance = workshop.json("compare ball.ply ball.lwc --json");
     assert!(distance["max"].as_f64().unwrap() <= step);
+}
+
+/// The options of mesh files, from the command line to the file.
+#[test]
+fn a_mesh_is_written_as_its_readers_want_it() {
+    let workshop = Workshop::new();
+    let obj = "v 0.1 0 0 0.5 0.25 1\nv 1.1 0 0 0.5 0.25 1\nv 1.1 1 0 0.5 0.25 1\nv 0.1 1 0 0.5 0.25 1\n\
+               vt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0.1 0.2\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/4/1 3/3/1 4/2/1\n";
+    fs::write(workshop.path("seam.obj"), obj).unwrap();
+    workshop.ok("encode seam.obj");
+    let header = |line: &str| {
+        let (_, stderr) = workshop.ok(&format!("decode seam.lwc -o out.ply {line}"));
+        let bytes = fs::read(workshop.path("out.ply")).unwrap();
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        (text.split("end_header").next().unwrap().to_owned(), stderr)
+    };
+    let (usual, stderr) = header("");
+    for line in ["property float x", "property uchar red", "property float nx", "list uchar float texcoord"] {
+        assert!(usual.contains(line), "{usual}");
+    }
+    assert_eq!(stderr.lines().count(), 1, "rounding is no news: {stderr}");
+    let (_, stderr) = header("-v");
+    assert!(stderr.contains("positions rounded to float32, by at most "), "{stderr}");
+    assert!(stderr.contains("values of vt rounded, by at most "), "{stderr}");
+    assert!(header("--position-type double").0.contains("property double x"));
+    assert!(header("--color-type ushort").0.contains("property uint16 red"));
+    assert!(header("--color-type keep").0.contains("property double red"));
+    let (split, _) = header("--split-seams");
+    assert!(split.contains("vertex 5\n") && split.contains("property float s\n"), "{split}");
+
+    let colour = |line: &str| {
+        workshop.ok(&format!("decode seam.lwc -o out.glb {line}"));
+        let file = io::read(workshop.path("out.glb")).unwrap();
+        let colour = file.attributes.list.iter().find(|attribute| attribute.name == "COLOR_0").unwrap();
+        (colour.number(0, 0).unwrap(), file.mesh.bounding_box().unwrap().1)
+    };
+    let (linear, corner) = colour("");
+    assert!((linear - 0.214).abs() < 1e-3 && corner[1] > 0.99, "{linear}");
+    let (kept, corner) = colour("--color-space keep --up z");
+    assert!((kept - 0.5).abs() < 1e-3 && corner[1] < 0.01, "{kept}");
+    workshop.fails("decode seam.lwc -o out.glb --up x", 2);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use std::borrow::Cow;
 
 /// What a format has as colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::io) struct ColourFormat {
+pub struct ColourFormat {
     /// Whether they are linear; `None`: whatever they are.
     pub is_linear: Option<bool>,
     pub numbers: ColourNumbers,
@@ -20,7 +20,7 @@ pub(in crate::io) struct ColourFormat {
 
 /// The types that a format has colours in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::io) enum ColourNumbers {
+pub enum ColourNumbers {
     /// This one: fractions if it is one of integers.
     Of(ComponentType),
     /// Fractions of 8 and 16 bits, and float32: the least of them that keeps the colours.
@@ -70,7 +70,7 @@ impl Turn {
 
 /// Colours as a format has them. Components beyond 0..1 are clamped where integers stand for them, and what is not finite
 /// is 1, as where there is no colour. Anything but numbers that are colours stays as it is.
-pub(in crate::io) fn converted<'a>(
+pub fn converted<'a>(
     attribute: Cow<'a, Attribute>,
     format: ColourFormat,
     losses: &mut Losses,

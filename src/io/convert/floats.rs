@@ -8,10 +8,7 @@ use std::borrow::Cow;
 
 /// The attribute with values of float32: fractions if it is normalised. Stays as it is if it is float32 already, has no
 /// numbers, or one that would become infinite.
-pub(in crate::io) fn as_float32<'a>(
-    attribute: Cow<'a, Attribute>,
-    losses: &mut Losses,
-) -> Cow<'a, Attribute> {
+pub fn as_float32<'a>(attribute: Cow<'a, Attribute>, losses: &mut Losses) -> Cow<'a, Attribute> {
     let n = attribute.num_components;
     let Some(scalar) = attribute.values.component_type().filter(|&scalar| scalar != ComponentType::F32)
     else {

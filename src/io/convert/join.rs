@@ -4,7 +4,7 @@ use crate::mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, TriMesh,
 use std::borrow::Cow;
 
 /// The list, each attribute that shares its meaning with an earlier one and no element joined to that.
-pub(in crate::io) fn joined<'a>(list: Vec<Cow<'a, Attribute>>, mesh: &TriMesh) -> Vec<Cow<'a, Attribute>> {
+pub fn joined<'a>(list: Vec<Cow<'a, Attribute>>, mesh: &TriMesh) -> Vec<Cow<'a, Attribute>> {
     let mut joined: Vec<Cow<'a, Attribute>> = Vec::with_capacity(list.len());
     for attribute in list {
         let known = joined.iter_mut().find(|known| means_the_same(known, &attribute));
@@ -17,7 +17,7 @@ pub(in crate::io) fn joined<'a>(list: Vec<Cow<'a, Attribute>>, mesh: &TriMesh) -
 }
 
 /// Whether two attributes are normals, texture coordinates or colours of one set.
-pub(in crate::io) fn means_the_same(a: &Attribute, b: &Attribute) -> bool {
+pub fn means_the_same(a: &Attribute, b: &Attribute) -> bool {
     let has_meaning = matches!(a.semantic, Semantic::Normal | Semantic::TexCoord(_) | Semantic::Color(_));
     let has_numbers = a.values.component_type().is_some() && b.values.component_type().is_some();
     has_meaning && has_numbers && a.semantic == b.semantic
@@ -51,7 +51,7 @@ fn kind(attribute: &Attribute) -> (Option<ComponentType>, bool, usize) {
 }
 
 /// Appends the table of another attribute of the same meaning: in the type of both, or else both as float32.
-pub(in crate::io) fn append_table(to: &mut Attribute, other: &Attribute) {
+pub fn append_table(to: &mut Attribute, other: &Attribute) {
     if kind(to) == kind(other) {
         return to.values.append(other.values.clone());
     }

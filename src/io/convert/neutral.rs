@@ -8,7 +8,7 @@ use crate::{
 use std::borrow::Cow;
 
 /// Values for what has none in a mesh.
-pub(in crate::io) struct Neutral<'a> {
+pub struct Neutral<'a> {
     mesh: &'a TriMesh,
     /// Of the vertices, once somebody has asked.
     normals: Option<Vec<[f64; 3]>>,
@@ -50,7 +50,7 @@ fn normals(mesh: &TriMesh) -> Vec<[f64; 3]> {
 
 /// The attribute with a value for each of `num_elements` elements. `vertex_of` says at which vertex an element is, for its
 /// normal.
-pub(in crate::io) fn filled<'a>(
+pub fn filled<'a>(
     attribute: Cow<'a, Attribute>,
     num_elements: usize,
     vertex_of: impl Fn(usize) -> usize,

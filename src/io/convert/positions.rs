@@ -8,7 +8,7 @@ use crate::{
 
 /// What rounding to float32 does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::io) struct Rounding {
+pub struct Rounding {
     /// Vertices that move.
     pub count: usize,
     /// The largest distance, model units.
@@ -29,7 +29,7 @@ fn shift(position: [f64; 3], origin: [f64; 3]) -> f64 {
 }
 
 /// What becomes of the positions as float32 around an origin; `None` if none of them moves.
-pub(in crate::io) fn rounding(mesh: &TriMesh, origin: [f64; 3]) -> Option<Rounding> {
+pub fn rounding(mesh: &TriMesh, origin: [f64; 3]) -> Option<Rounding> {
     let mut rounding = Rounding::default();
     for &position in mesh.positions() {
         let shift = shift(position, origin);
@@ -66,7 +66,7 @@ fn mean_edge_lengths(mesh: &TriMesh) -> Vec<f64> {
 }
 
 /// What to say of it.
-pub(in crate::io) fn loss_of(rounding: Rounding, mesh: &TriMesh, remedy: &str) -> Loss {
+pub fn loss_of(rounding: Rounding, mesh: &TriMesh, remedy: &str) -> Loss {
     let loss = Loss::new(Stage::Writing, LossKind::PositionsRounded, "float32");
     let loss = loss.count(rounding.count).of(mesh.num_vertices()).at_most(rounding.largest);
     let loss = if rounding.in_edges > 0.0 { loss.in_edges(rounding.in_edges) } else { loss };
@@ -77,7 +77,7 @@ pub(in crate::io) fn loss_of(rounding: Rounding, mesh: &TriMesh, remedy: &str) -
 ///
 /// A stream does not say which type its positions had; but on a grid whose step float32 is fine enough for, nobody
 /// needs more.
-pub(in crate::io) fn is_float32(mesh: &TriMesh, options: &WriteOptions) -> bool {
+pub fn is_float32(mesh: &TriMesh, options: &WriteOptions) -> bool {
     match options.position_type {
         PositionType::Float => true,
         PositionType::Double => false,
@@ -89,7 +89,7 @@ pub(in crate::io) fn is_float32(mesh: &TriMesh, options: &WriteOptions) -> bool 
 }
 
 /// Refuses coordinates beyond float32; `format` is for the message.
-pub(in crate::io) fn check_float32(mesh: &TriMesh, format: &str) -> Result<(), WriteError> {
+pub fn check_float32(mesh: &TriMesh, format: &str) -> Result<(), WriteError> {
     let is_far = |p: &[f64; 3]| p.iter().any(|&c| (c as f32).is_infinite());
     match mesh.positions().iter().position(is_far) {
         None => Ok(()),

@@ -8,7 +8,7 @@ use crate::{
 use std::collections::HashMap;
 
 /// A mesh with a vertex for each combination of values at a vertex, in the order of the vertices that they are of.
-pub(in crate::io) struct Split {
+pub struct Split {
     /// The vertex of the mesh that each is.
     pub sources: Vec<u32>,
     pub triangles: Vec<[u32; 3]>,

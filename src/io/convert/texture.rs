@@ -11,11 +11,7 @@ use std::borrow::Cow;
 
 /// `attribute` as a file has it that counts downwards (or not): texture coordinates from the other kind of
 /// file turned, everything else as it is. Turned ones are float32, float64 only where they were.
-pub(in crate::io) fn oriented<'a>(
-    attribute: &'a Attribute,
-    is_downwards: bool,
-    losses: &mut Losses,
-) -> Cow<'a, Attribute> {
+pub fn oriented<'a>(attribute: &'a Attribute, is_downwards: bool, losses: &mut Losses) -> Cow<'a, Attribute> {
     let comes_downwards = attribute.name.starts_with("TEXCOORD_");
     let is_texture = matches!(attribute.semantic, Semantic::TexCoord(_)) && attribute.num_components >= 2;
     let Some(scalar) = attribute.values.component_type() else { return Cow::Borrowed(attribute) };
