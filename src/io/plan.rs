@@ -24,7 +24,7 @@ pub(super) struct Plan<'a> {
 }
 
 enum File<'a> {
-    Obj(obj::Plan<'a>),
+    Obj(Box<obj::Plan<'a>>),
     Ply(ply::Plan<'a>),
     Stl(stl::Plan<'a>),
     #[cfg(feature = "gltf")]
@@ -49,7 +49,7 @@ impl<'a> Plan<'a> {
         }
         let mut losses = Losses::default();
         let file = match format {
-            Format::Obj => File::Obj(obj::Plan::new(mesh, attributes, options, &mut losses)?),
+            Format::Obj => File::Obj(Box::new(obj::Plan::new(mesh, attributes, options, &mut losses)?)),
             Format::Ply => File::Ply(ply::Plan::new(mesh, attributes, options, &mut losses)?),
             Format::Stl => File::Stl(stl::Plan::new(mesh, attributes, &mut losses)?),
             #[cfg(feature = "gltf")]

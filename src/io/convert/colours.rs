@@ -3,10 +3,12 @@
 //! Colours in PLY, OBJ and LAS are sRGB by convention, those of glTF are linear by its specification. Readers keep what
 //! the file says, under the name it has there; a writer of the other kind turns it. Opacity is never turned.
 
-use super::srgb::{linear_of, srgb_of};
 use crate::{
     losses::{Loss, LossKind, Losses, Stage},
-    mesh::{Attribute, ComponentType, Semantic, Values},
+    mesh::{
+        Attribute, ComponentType, Semantic, Values,
+        srgb::{is_linear, linear_of, srgb_of},
+    },
 };
 use std::borrow::Cow;
 
@@ -27,11 +29,6 @@ pub enum ColourNumbers {
     Gltf,
     /// Any. Those of another colour space are float32.
     Any,
-}
-
-/// Whether colours are linear: those of glTF are, and keep its name.
-fn is_linear(attribute: &Attribute) -> bool {
-    attribute.name.starts_with("COLOR_")
 }
 
 /// The way from the colour space that colours have to another, and back.

@@ -6,7 +6,6 @@ mod join;
 mod neutral;
 mod positions;
 mod seams;
-mod srgb;
 mod texture;
 
 pub(super) use colours::{ColourFormat, ColourNumbers, converted};

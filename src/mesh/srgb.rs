@@ -1,16 +1,24 @@
 //! sRGB and linear colours, components from 0 to 1 (IEC 61966-2-1).
 
+use super::{Attribute, Semantic};
+
+/// Whether an attribute has linear colours: those of glTF are, and keep its name. All others are sRGB.
+pub(crate) fn is_linear(attribute: &Attribute) -> bool {
+    matches!(attribute.semantic, Semantic::Color(_)) && attribute.name.starts_with("COLOR_")
+}
+
 /// The linear value of an sRGB component. What is outside 0..1 goes on as the curve does.
-pub(super) fn linear_of(srgb: f64) -> f64 {
+#[cfg(feature = "io")]
+pub(crate) fn linear_of(srgb: f64) -> f64 {
     if srgb <= 0.04045 { srgb / 12.92 } else { libm::pow((srgb + 0.055) / 1.055, 2.4) }
 }
 
 /// The sRGB value of a linear component.
-pub(super) fn srgb_of(linear: f64) -> f64 {
+pub(crate) fn srgb_of(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * (libm::pow(linear, 1.0 / 2.4) - 1.0) + 1.0 }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "io"))]
 mod tests {
     use super::*;
 
