@@ -46,9 +46,9 @@ pub struct Decode {
     #[arg(long)]
     pub salvage: bool,
     #[command(flatten)]
-    pub writing: Writing,
-    #[command(flatten)]
     pub limits: LimitArgs,
+    #[command(flatten)]
+    pub writing: Writing,
 }
 
 /// Reads and decodes at once, writes, reports.

@@ -39,9 +39,9 @@ pub struct Edit {
     #[command(flatten)]
     pub reading: Reading,
     #[command(flatten)]
-    pub writing: Writing,
-    #[command(flatten)]
     pub limits: LimitArgs,
+    #[command(flatten)]
+    pub writing: Writing,
 }
 
 /// A level is decoded with the meshes of a scene in their places, and has other vertices than the stream.
