@@ -38,7 +38,7 @@ impl<'a> Layout<'a> {
     ) -> Result<(Cow<'a, TriMesh>, Self), WriteError> {
         let (names, numbers): (Vec<_>, Vec<_>) =
             attributes.list.iter().partition(|attribute| attribute.values.names().is_some());
-        names.iter().for_each(|attribute| losses.push(dropped(&attribute.name, "OBJ and glTF keep names")));
+        names.iter().for_each(|attribute| losses.push(dropped(&attribute.name, "OBJ keeps names")));
         if !attributes.material_libraries.is_empty() {
             losses.push(dropped("mtllib", "OBJ keeps it"));
         }
