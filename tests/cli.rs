@@ -682,20 +682,64 @@ fn the_whole_stream_is_the_mesh_on_the_grid() {
     workshop.ball_stream();
     let (stdout, stderr) = workshop.ok("decode ball.lwc");
     assert!(stderr.starts_with("ball.decoded.obj: 642 vertices, 1280 triangles, level "), "{stderr}");
-    assert_eq!((stdout, stderr.lines().count()), (String::new(), 1));
+    assert!(stderr.lines().nth(1).is_some_and(|line| line.starts_with("lost: ")), "{stderr}");
+    assert_eq!((stdout, stderr.lines().count()), (String::new(), 2));
     let decoded = workshop.mesh("ball.decoded.obj");
     assert_eq!((decoded.num_vertices(), decoded.num_triangles()), (642, 1280));
 
     let info = workshop.json("info ball.lwc --json");
     let step = info["step"][0].as_f64().unwrap();
-    for p in decoded.positions() {
-        for (axis, x) in p.iter().enumerate() {
-            let cell = (x - info["origin"][axis].as_f64().unwrap()) / step;
-            assert!((cell - cell.round()).abs() < 1e-6 && (-0.5..4095.5).contains(&cell), "{cell}");
+    workshop.ok("decode ball.lwc -o double.obj --position-type double");
+    for (mesh, most) in [(&decoded, 0.125), (&workshop.mesh("double.obj"), 1e-6)] {
+        for p in mesh.positions() {
+            for (axis, x) in p.iter().enumerate() {
+                let cell = (x - info["origin"][axis].as_f64().unwrap()) / step;
+                assert!((cell - cell.round()).abs() < most && (-0.5..4095.5).contains(&cell), "{cell}");
+            }
         }
     }
     let distance = workshop.json("compare ball.ply ball.lwc --json");
     assert!(distance["max"].as_f64().unwrap() <= step);
+}
+
+/// The options of mesh files, from the command line to the file.
+#[test]
+fn a_mesh_is_written_as_its_readers_want_it() {
+    let workshop = Workshop::new();
+    let obj = "v 0.1 0 0 0.5 0.25 1\nv 1.1 0 0 0.5 0.25 1\nv 1.1 1 0 0.5 0.25 1\nv 0.1 1 0 0.5 0.25 1\n\
+               vt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0.1 0.2\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/4/1 3/3/1 4/2/1\n";
+    fs::write(workshop.path("seam.obj"), obj).unwrap();
+    workshop.ok("encode seam.obj");
+    let header = |line: &str| {
+        let (_, stderr) = workshop.ok(&format!("decode seam.lwc -o out.ply {line}"));
+        let bytes = fs::read(workshop.path("out.ply")).unwrap();
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        (text.split("end_header").next().unwrap().to_owned(), stderr)
+    };
+    let (usual, stderr) = header("");
+    for line in ["property float x", "property uchar red", "property float nx", "list uchar float texcoord"] {
+        assert!(usual.contains(line), "{usual}");
+    }
+    assert!(!stderr.contains("warning"), "rounding is no news: {stderr}");
+    assert!(stderr.contains("positions rounded to float32, by at most "), "{stderr}");
+    assert!(stderr.contains("vt: 5 of 10 values rounded, by at most "), "{stderr}");
+    assert!(header("--position-type double").0.contains("property double x"));
+    assert!(header("--color-type ushort").0.contains("property uint16 red"));
+    assert!(header("--color-type keep").0.contains("property double red"));
+    let (split, _) = header("--split-seams");
+    assert!(split.contains("vertex 5\n") && split.contains("property float s\n"), "{split}");
+
+    let colour = |line: &str| {
+        workshop.ok(&format!("decode seam.lwc -o out.glb {line}"));
+        let file = io::read(workshop.path("out.glb")).unwrap();
+        let colour = file.attributes.list.iter().find(|attribute| attribute.name == "COLOR_0").unwrap();
+        (colour.number(0, 0).unwrap(), file.mesh.bounding_box().unwrap().1)
+    };
+    let (linear, corner) = colour("");
+    assert!((linear - 0.215).abs() < 2e-3 && corner[1] > 0.99, "{linear}");
+    let (kept, corner) = colour("--color-space keep --up z");
+    assert!((kept - 0.5).abs() < 3e-3 && corner[1] < 0.01, "{kept}");
+    workshop.fails("decode seam.lwc -o out.glb --up x", 2);
 }
 
 #[test]

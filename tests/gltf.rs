@@ -6,10 +6,16 @@ use base64::Engine;
 use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, ReadError},
+    losses::{LossKind, Losses},
     mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values},
 };
 use serde_json::{Value, json};
 use std::fs;
+
+/// What is lost in this way.
+fn lost(losses: &Losses, kind: LossKind) -> Vec<&str> {
+    losses.iter().filter(|loss| loss.kind == kind).map(|loss| loss.subject.as_str()).collect()
+}
 
 /// A document while it is made: each array is a view of one buffer.
 #[derive(Default)]
@@ -166,8 +172,8 @@ fn seams_are_joined_and_what_has_none_is_of_vertices() {
 
     for format in [Format::Glb, Format::Gltf] {
         let mut bytes = Vec::new();
-        let report = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, format).unwrap();
-        assert_eq!(report, io::WriteReport::default());
+        let losses = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, format).unwrap();
+        assert_eq!(losses.to_string(), "1 vertex repeated");
         let again = io::read_bytes(&bytes, format).unwrap();
         assert_eq!(corners(&again.mesh), corners(&file.mesh));
         for name in ["NORMAL", "TEXCOORD_0", "COLOR_0"] {
@@ -203,8 +209,10 @@ fn primitives_share_vertices_and_have_materials() {
     assert!(file.report.ignored.is_empty());
 
     let mut bytes = Vec::new();
-    let report = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Glb).unwrap();
-    assert_eq!((report.ignored, report.zeroed), (vec![], vec!["_ID".to_owned()]));
+    let losses = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Glb).unwrap();
+    let filled = lost(&losses, LossKind::ValuesFilled);
+    assert_eq!((lost(&losses, LossKind::Dropped).len(), filled), (0, vec!["_ID (0)"]));
+    assert_eq!(lost(&losses, LossKind::Reordered), ["triangles by material"]);
     let again = io::read_bytes(&bytes, Format::Glb).unwrap();
     // One primitive for each material: the triangles without one come first.
     assert_eq!(named(&again, "material").indices, Some(vec![NO_ENTRY, 0, 0, 1]));
@@ -319,7 +327,7 @@ fn scenes_are_written_in_their_places() {
     let scene = io::read_scene(&path).unwrap();
     for ending in ["glb", "gltf"] {
         let copy = folder.path().join("copy").with_extension(ending);
-        assert_eq!(io::write_scene(&copy, &scene).unwrap(), io::WriteReport::default());
+        assert_eq!(io::write_scene(&copy, &scene).unwrap(), Losses::default());
         let again = io::read_scene(&copy).unwrap();
         assert_eq!(again.meshes.len(), 2);
         for (a, b) in again.meshes.iter().zip(&scene.meshes) {
@@ -433,8 +441,8 @@ fn materials_and_their_images_are_carried() {
     assert_eq!(again.attributes, file.attributes);
 
     let mut ply = Vec::new();
-    let report = io::write_with_attributes_to(&mut ply, &file.mesh, &file.attributes, Format::Ply).unwrap();
-    assert!(report.ignored.contains(&"materials except their names".to_owned()));
+    let losses = io::write_with_attributes_to(&mut ply, &file.mesh, &file.attributes, Format::Ply).unwrap();
+    assert!(lost(&losses, LossKind::Dropped).contains(&"materials except their names"));
 }
 
 #[test]
@@ -865,11 +873,13 @@ fn a_glb_is_framed_as_it_should_be() {
         vertex("small int", 3, Values::I8(vec![-1, 2, -3, 4, -5, 6, -7, 8, -9])),
     ];
     let mut bytes = Vec::new();
-    let report = io::write_with_attributes_to(&mut bytes, &mesh, &attributes, Format::Glb).unwrap();
-    assert_eq!(report.ignored, ["id", "bad", "JOINTS_0", "wide"]);
+    let losses = io::write_with_attributes_to(&mut bytes, &mesh, &attributes, Format::Glb).unwrap();
+    assert_eq!(lost(&losses, LossKind::Dropped), ["id", "bad", "JOINTS_0", "wide"]);
+    assert_eq!(lost(&losses, LossKind::NamesChanged), ["heat (_heat)", "small int (_small int)"]);
+    assert_eq!(lost(&losses, LossKind::ValuesRounded), ["heat"]);
     let again = io::read_bytes(&bytes, Format::Glb).unwrap();
-    assert_eq!(named(&again, "_HEAT").values, Values::F32(vec![0.1, 0.2, 0.3]));
-    assert_eq!(named(&again, "_SMALL_INT").values, attributes.list[5].values);
+    assert_eq!(named(&again, "_heat").values, Values::F32(vec![0.1, 0.2, 0.3]));
+    assert_eq!(named(&again, "_small int").values, attributes.list[5].values);
 }
 
 #[test]
@@ -893,14 +903,15 @@ fn tangents_are_written_beside_normals() {
     attributes.list = vec![vertex("TANGENT", Semantic::Generic, 4, Values::F32(tangents))];
     let write = |attributes: &lwc::mesh::Attributes| {
         let mut bytes = Vec::new();
-        let report = io::write_with_attributes_to(&mut bytes, &mesh, attributes, Format::Glb).unwrap();
-        (io::read_bytes(&bytes, Format::Glb).unwrap(), report.ignored)
+        let losses = io::write_with_attributes_to(&mut bytes, &mesh, attributes, Format::Glb).unwrap();
+        (io::read_bytes(&bytes, Format::Glb).unwrap(), losses)
     };
-    assert_eq!(write(&attributes).1, ["TANGENT"], "they mean nothing alone");
+    assert_eq!(lost(&write(&attributes).1, LossKind::Dropped), ["TANGENT"], "they mean nothing alone");
     let normals = Values::F32([exact, exact, [0.0, 0.0, 2.0]].concat());
     attributes.list.push(vertex("NORMAL", Semantic::Normal, 3, normals));
-    let (again, ignored) = write(&attributes);
-    assert!(ignored.is_empty());
+    let (again, losses) = write(&attributes);
+    let converted = ["TANGENT (to length 1)", "NORMAL (to length 1)"];
+    assert_eq!((lost(&losses, LossKind::ValuesConverted), losses.len()), (converted.to_vec(), 2));
     let wanted = [&exact[..], &[1.0], &[0.0, 0.6, 0.8, -1.0], &[1.0, 0.0, 0.0, 1.0]].concat();
     assert_eq!(named(&again, "TANGENT").values, Values::F32(wanted));
     assert_eq!(named(&again, "NORMAL").values, Values::F32([exact, exact, [0.0, 0.0, 1.0]].concat()));

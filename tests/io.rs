@@ -395,11 +395,11 @@ fn ply_reads_all_types_and_skips_extras() {
 }
 
 #[test]
-fn ply_text_numbers_are_float64_whatever_the_type_says() {
+fn ply_text_numbers_that_no_float32_has_are_float64_whatever_the_type_says() {
     let header =
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
     let mesh = ply(format!("{header}end_header\n0.1 5500000.001 1e-300\n")).unwrap().mesh;
-    assert_eq!(mesh.positions(), [[0.1, 5_500_000.001, 1e-300]]);
+    assert_eq!(mesh.positions(), [[f64::from(0.1f32), 5_500_000.001, 1e-300]]);
 }
 
 #[test]

@@ -84,15 +84,6 @@ pub fn say_written(destination: &Destination, what: &str, ui: &Ui) {
     ui.say(&format!("{}: {what}{size}", path.display()));
 }
 
-/// Says what a format had no place for.
-pub fn warn_left_out(destination: &Destination, report: &lwc::io::WriteReport, ui: &Ui) {
-    for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {
-        if !names.is_empty() {
-            ui.warn(&destination.name(), &format!("{what}: {}", names.join(", ")));
-        }
-    }
-}
-
 /// `12 vertices, 20 triangles`.
 pub fn size_of(mesh: &TriMesh) -> String {
     let vertices = counted(mesh.num_vertices(), "vertex", "vertices");

@@ -366,9 +366,8 @@ pub fn read_mesh(data: &[u8], format: Format) {
         attribute.validate(&file.mesh).expect("readers give valid attributes");
     }
     let mut bytes = Vec::new();
-    if io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, format).is_err() {
-        return;
-    }
+    let written = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, format);
+    let Ok(losses) = written else { return };
     let again = io::read_bytes(&bytes, format).expect("a written mesh is readable");
     assert_eq!(again.mesh.num_triangles(), file.mesh.num_triangles());
     // The others are rounded to float32.
@@ -381,7 +380,8 @@ pub fn read_mesh(data: &[u8], format: Format) {
                 other.name == attribute.name && have_equal_values(&file.mesh, attribute, other)
             };
             let found = again.attributes.list.iter().any(is_same);
-            assert!(found || !has_values, "{} reads differently", attribute.name);
+            let is_said = losses.iter().any(|loss| loss.subject.starts_with(&attribute.name));
+            assert!(found || is_said || !has_values, "{} reads differently", attribute.name);
         }
     }
 }
@@ -420,13 +420,14 @@ fn ignore_panics_of_laz() {
 /// Whether two attributes look the same from every corner, except for values that one of them lacks.
 fn have_equal_values(mesh: &TriMesh, a: &Attribute, b: &Attribute) -> bool {
     let n = a.num_components;
-    // Fractions of 8 bits are written as decimals where a format has no such type.
+    // Colours, and numbers where a format has no such type, are written in another type that has them, too.
     let is_same_type = a.values.component_type() == b.values.component_type();
     let number = |attribute: &Attribute, entry: usize, k: usize| {
         if is_same_type {
             attribute.values.bits(entry * n + k)
         } else {
-            attribute.number(entry, k).map(f64::to_bits)
+            let float = attribute.number(entry, k)? as f32;
+            Some(u64::from(if float.is_nan() { f32::NAN.to_bits() } else { float.to_bits() }))
         }
     };
     let value = |attribute: &Attribute, triangle: usize, corner: usize| {
@@ -435,7 +436,6 @@ fn have_equal_values(mesh: &TriMesh, a: &Attribute, b: &Attribute) -> bool {
         Some((numbers, attribute.values.names().map(|names| names[entry].clone())))
     };
     n == b.num_components
-        && (is_same_type || a.is_normalized)
         && (0..3 * mesh.num_triangles()).all(|k| {
             let (a, b) = (value(a, k / 3, k % 3), value(b, k / 3, k % 3));
             a.is_none() || b.is_none() || a == b

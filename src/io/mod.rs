@@ -23,6 +23,7 @@ mod beside;
 mod builder;
 #[cfg(feature = "gltf")]
 mod common_type;
+mod convert;
 mod counter;
 mod error;
 mod foreign;
@@ -35,6 +36,7 @@ mod las;
 mod materials;
 mod mesh_file;
 mod obj;
+mod plan;
 mod ply;
 mod polygon;
 mod read;
@@ -44,9 +46,9 @@ mod scene;
 mod source;
 mod stl;
 mod text;
-mod texture;
 mod unpack;
 mod write;
+mod write_options;
 
 #[cfg(feature = "gltf")]
 pub use crate::mesh::Instance;
@@ -55,7 +57,7 @@ pub use error::{Place, ReadError, WriteError};
 pub use format::Format;
 #[cfg(feature = "las")]
 pub use las::TerrainOptions;
-pub use mesh_file::{MeshFile, ReadReport, WriteReport};
+pub use mesh_file::{MeshFile, ReadReport};
 #[cfg(feature = "gltf")]
 pub use read::read_scene;
 pub use read::{read, read_bytes};
@@ -67,3 +69,4 @@ pub use unpack::{MAX_FILE_BYTES, ReadOptions};
 pub use write::{write, write_ply_coloured, write_to, write_with_attributes, write_with_attributes_to};
 #[cfg(feature = "gltf")]
 pub use write::{write_scene, write_scene_to};
+pub use write_options::{ColorSpace, ColorType, PositionType, STEP_SHARE, UpAxis, WriteOptions};

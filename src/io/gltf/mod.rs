@@ -6,7 +6,6 @@
 
 mod accessor;
 mod gpu_instances;
-mod instances;
 mod joined_materials;
 mod json;
 mod materials;
@@ -19,7 +18,7 @@ mod write;
 
 pub(super) use joined_materials::{append_materials, looks};
 pub(super) use materials::strip_textures;
-pub(super) use write::{Container, write, write_scene};
+pub(super) use write::{Container, Plan};
 
 use super::{Place, ReadError, Scene, beside::Folder};
 use accessor::Store;

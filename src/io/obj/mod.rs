@@ -7,6 +7,7 @@
 
 mod colours;
 mod corner_tables;
+mod layout;
 #[cfg(feature = "gltf")]
 mod mtl;
 mod references;
@@ -14,7 +15,7 @@ mod rows;
 mod statements;
 mod write;
 
-pub(super) use write::write;
+pub(super) use write::Plan;
 
 use super::{
     MeshFile, Place, ReadError,

@@ -11,12 +11,13 @@
 mod body;
 mod columns;
 mod header;
+mod layout;
 mod scalar;
 mod textures;
 mod write;
 
 pub(super) use textures::TEXTURE_FILE;
-pub(super) use write::write;
+pub(super) use write::Plan;
 
 use super::{MeshFile, ReadError, beside::Folder, builder::MeshBuilder, builder::fan, source::Source};
 use crate::mesh::{Attribute, Domain, NO_ENTRY, Semantic, Values};

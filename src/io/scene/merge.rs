@@ -186,6 +186,7 @@ impl Merger {
         for attribute in &attributes.list {
             let turned;
             let attribute = match motion {
+                Motion::Affine(transform) if is_translation(&transform) => attribute,
                 Motion::Affine(transform) if attribute.semantic == Semantic::Normal => {
                     turned = turned_normals(attribute, &transform);
                     &turned
@@ -281,6 +282,11 @@ impl Merger {
         }
         Ok(file)
     }
+}
+
+/// Directions stay as they are then, bit for bit.
+fn is_translation(transform: &[[f64; 4]; 3]) -> bool {
+    transform.iter().zip(&IDENTITY).all(|(row, identity)| row[..3] == identity[..3])
 }
 
 fn determinant([[a, b, c, _], [d, e, f, _], [g, h, i, _]]: &[[f64; 4]; 3]) -> f64 {

@@ -83,6 +83,7 @@ impl Scene {
             instances: table.instances.clone(),
             gltf_materials: attributes.gltf_materials.clone(),
             report: ReadReport::default(),
+            scales: table.exponents.iter().map(|&exponent| power_of_two(exponent).recip()).collect(),
             num_bytes,
         }))
     }
