@@ -15,7 +15,7 @@ pub struct Args {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    Encode(super::encode::args::Encode),
+    Encode(Box<super::encode::args::Encode>),
     Decode(super::decode::Decode),
     Info(super::info::Info),
     Describe(super::describe::Describe),
