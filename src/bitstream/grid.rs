@@ -18,12 +18,6 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// A point, given by whole numbers or halves.
-    #[inline]
-    fn point(&self, numbers: [f64; 3]) -> [f64; 3] {
-        std::array::from_fn(|axis| self.origin[axis] + numbers[axis] * self.step[axis])
-    }
-
     /// The number of the closest point along each axis, halves rounded up.
     #[cfg(feature = "encoder")]
     #[inline]
@@ -69,15 +63,12 @@ impl Grid {
         let hidden = self.quantization_bits - quantization_bits;
         let half = (f64::from(1_u32 << hidden) - 1.0) * 0.5;
         let fine = cell.map(|c| f64::from(c << hidden) + half);
-        match self.spread {
-            Spread::Cube { origin, side } => {
-                let steps = f64::from(self.last_cell());
-                std::array::from_fn(|axis| origin[axis] + fine[axis] / steps * side)
-            }
-            Spread::Lattice { lattice, offset } => {
-                lattice.point(std::array::from_fn(|axis| offset[axis] as f64 + fine[axis]))
-            }
-        }
+        // One expression for both: a sum with 0 and a quotient by 1 are exact.
+        let (origin, offset, steps, length) = match self.spread {
+            Spread::Cube { origin, side } => (origin, [0; 3], f64::from(self.last_cell()), [side; 3]),
+            Spread::Lattice { lattice, offset } => (lattice.origin, offset, 1.0, lattice.step),
+        };
+        std::array::from_fn(|axis| origin[axis] + (offset[axis] as f64 + fine[axis]) / steps * length[axis])
     }
 
     /// Sides of the cells of so many bits.

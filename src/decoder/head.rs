@@ -16,6 +16,7 @@ use crate::limits::Limits;
 use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
 use crate::util::budget::Budget;
+use std::sync::Arc;
 
 /// The header chunks received so far.
 #[derive(Default)]
@@ -27,7 +28,7 @@ pub(super) struct Head {
     announced: Option<ChunkIndex>,
     scene: Option<SceneTable>,
     pub(super) materials: Option<GltfMaterials>,
-    metadata: Option<Vec<(String, String)>>,
+    metadata: Option<Arc<[(String, String)]>>,
     /// Until the decoder of their values takes them.
     pub(super) declarations: Option<Declarations>,
     /// Bytes of memory that all of this takes.
@@ -69,7 +70,7 @@ impl Head {
                 self.scene = Some(self.read(source, "the scene", scene::read)?);
             }
             kind::METADATA if self.metadata.is_none() => {
-                self.metadata = Some(self.read(source, "metadata", metadata::read)?);
+                self.metadata = Some(self.read(source, "metadata", metadata::read)?.into());
             }
             kind::MATERIALS if self.materials.is_none() => self.take_materials(source)?,
             kind::ANNOUNCED if self.announced.is_none() => {
@@ -113,7 +114,7 @@ impl Head {
         let (passes, trailing) = passes;
         let none = Declarations::default();
         let scene = self.scene.take();
-        let metadata = self.metadata.take().unwrap_or_default().into();
+        let metadata = self.metadata.take();
         let declared = self.declared().unwrap_or(&none);
         let info = StreamInfo {
             grid: header.grid,

@@ -21,7 +21,7 @@ pub struct StreamInfo {
     pub(super) attributes: Vec<AttributeInfo>,
     pub(super) trailing: Vec<TrailingInfo>,
     pub(super) scene: Option<SceneTable>,
-    pub(super) metadata: Arc<[(String, String)]>,
+    pub(super) metadata: Option<Arc<[(String, String)]>>,
     pub(super) work: u64,
 }
 
@@ -237,7 +237,7 @@ impl StreamInfo {
 
     /// What else is known of the whole: see [`Attributes::metadata`](crate::mesh::Attributes::metadata).
     pub fn metadata(&self) -> &[(String, String)] {
-        &self.metadata
+        self.metadata.as_deref().unwrap_or_default()
     }
 
     /// What follows the last pass, in order.
