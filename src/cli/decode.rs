@@ -92,7 +92,7 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let mut losses = decoder.losses();
     if args.strictness.strict {
         losses.append(out.losses().with_context(|| destination.name())?);
-        args.strictness.check(&losses).with_context(|| source.name())?;
+        args.strictness.check_or_print(&losses, args.json).with_context(|| source.name())?;
     }
     losses.append(out.write(&destination)?);
     drop(bar);

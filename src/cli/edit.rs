@@ -11,6 +11,7 @@ use super::writing::Writing;
 use anyhow::Context;
 use lwc::StreamInfo;
 use lwc::io::{Format, WriteError};
+use lwc::mesh::{IDENTITY, Instance, SceneTable};
 use lwc::multiresolution::DetailTransfer;
 use std::io;
 use std::path::PathBuf;
@@ -44,10 +45,16 @@ pub struct Edit {
     pub writing: Writing,
 }
 
+/// Whether a scene is nothing but a mesh with a name.
+fn is_one_mesh_in_place(scene: &SceneTable) -> bool {
+    let is_in_place = |instance: &Instance| instance.transform == IDENTITY;
+    scene.exponents == [0] && matches!(&scene.instances[..], [instance] if is_in_place(instance))
+}
+
 /// A level is decoded with the meshes of a scene in their places, and has other vertices than the stream.
 fn refuse_scene(bytes: &[u8]) -> Result<(), Failure> {
     match StreamInfo::read(bytes) {
-        Ok(Some(info)) if info.scene().is_some() => {
+        Ok(Some(info)) if info.scene().is_some_and(|scene| !is_one_mesh_in_place(scene)) => {
             let what = "a scene cannot be edited; `lwc encode --merge` makes one mesh of it";
             Err(Failure::Input(io::Error::other(what)))
         }

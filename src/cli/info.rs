@@ -7,7 +7,7 @@ use super::output::print_json;
 use super::passes;
 use super::rate_distortion;
 use super::stream::{StreamSource, read_head};
-use super::ui::Ui;
+use super::ui::{Ui, printable};
 use anyhow::Context;
 use lwc::descriptors::Descriptor;
 use lwc::{DecodeOptions, Lattice, Partition, StreamInfo};
@@ -129,7 +129,7 @@ fn print(
     }
     writeln!(out, "profile     {}", info.profile().name())?;
     for (key, text) in info.metadata() {
-        writeln!(out, "{key:<11} {}", shown(text))?;
+        writeln!(out, "{:<11} {}", shown(key), shown(text))?;
     }
     passes::print_attributes(&mut *out, info, attribute_bytes)?;
     writeln!(out, "header      {} bytes\n", header_bytes(info))?;
@@ -164,8 +164,7 @@ fn metadata(info: &StreamInfo) -> serde_json::Map<String, Value> {
 /// The beginning of a text, on one line.
 fn shown(text: &str) -> String {
     const MAX_CHARS: usize = 200;
-    let clean = |c: char| if c.is_control() { ' ' } else { c };
-    let mut shown: String = text.chars().take(MAX_CHARS).map(clean).collect();
+    let mut shown = printable(&text.chars().take(MAX_CHARS).collect::<String>()).replace('\n', " ");
     if text.chars().nth(MAX_CHARS).is_some() {
         shown.push('…');
     }

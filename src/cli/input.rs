@@ -23,7 +23,12 @@ pub fn read_mesh(path: &Path, reading: &Reading, part: Part, ui: &Ui) -> anyhow:
         Source::Stdin(format) => Ok(options.read_from(io::stdin().lock(), format)?),
         Source::File => Ok(options.read_with_progress(path, &|done| part.set(done))?),
     };
-    read_with(path, read, ui)
+    let file = read_with(path, read, ui)?;
+    if file.mesh.num_triangles() == 0 && file.mesh.num_vertices() > 0 {
+        let points = counted(file.mesh.num_vertices(), "point", "points");
+        ui.warn(&name_of(path), &format!("a point cloud: {points} without faces"));
+    }
+    Ok(file)
 }
 
 /// As [`read_mesh`], with options that are there for point clouds only.
@@ -102,10 +107,6 @@ fn with_hint(error: anyhow::Error) -> anyhow::Error {
 }
 
 fn warn_about(name: &str, file: &MeshFile, ui: &Ui) {
-    if file.mesh.num_triangles() == 0 && file.mesh.num_vertices() > 0 {
-        let points = counted(file.mesh.num_vertices(), "point", "points");
-        ui.warn(name, &format!("a point cloud: {points} without faces"));
-    }
     losses::warn(name, &file.report.losses(), ui);
 }
 
@@ -122,7 +123,10 @@ pub struct StreamInput<'a> {
 impl StreamInput<'_> {
     /// As [`read_mesh`], but the meshes of a scene keep to themselves unless they are to be merged.
     pub fn read(&self, part: Part, ui: &Ui) -> anyhow::Result<MeshFile> {
-        let join = |scene: Scene| if self.merge || scene.is_single() { scene.merge() } else { scene.pack() };
+        // A name is worth the few bytes of a scene of one mesh.
+        let has_name = |scene: &Scene| scene.instances.iter().any(|instance| !instance.name.is_empty());
+        let is_plain = |scene: &Scene| self.merge || scene.is_single() && !has_name(scene);
+        let join = |scene: Scene| if is_plain(&scene) { scene.merge() } else { scene.pack() };
         if let [path] = self.paths[..] {
             return read_with(path, || Ok(join(self.read_scene(path, part)?)?), ui);
         }

@@ -1,9 +1,11 @@
 //! What is told of losses: once, on standard error or in JSON; with `--strict` they are an error.
 
 use super::exit::Failure;
+use super::output::print_json;
 use super::ui::Ui;
 use lwc::losses::{Loss, Losses};
 use serde_json::{Value, json};
+use std::io;
 
 /// Whether losses are refused.
 #[derive(Debug, clap::Args)]
@@ -21,7 +23,19 @@ impl Strictness {
         if !self.strict || losses.is_empty() {
             return Ok(());
         }
-        Err(Failure::Lossy(joined(losses.iter())))
+        Err(Failure::Lossy(joined(gathered(losses.iter()).iter())))
+    }
+
+    /// As [`Strictness::check`], and prints the losses that are refused as JSON if that is wanted.
+    ///
+    /// # Errors
+    /// As [`Strictness::check`], and if nobody can be told.
+    pub fn check_or_print(&self, losses: &Losses, json: bool) -> anyhow::Result<()> {
+        let checked = self.check(losses);
+        if checked.is_err() && json {
+            print_json(io::stdout().lock(), &json!({ "written": false, "losses": to_json(losses) }))?;
+        }
+        Ok(checked?)
     }
 }
 
@@ -33,13 +47,27 @@ pub fn warn(name: &str, losses: &Losses, ui: &Ui) {
 /// One sentence for names that have kind and remedy in common.
 fn gathered<'a>(losses: impl Iterator<Item = &'a Loss>) -> Vec<Loss> {
     let mut sentences: Vec<Loss> = Vec::new();
+    let mut subjects: Vec<Vec<&str>> = Vec::new();
     for loss in losses {
-        match sentences.iter_mut().find(|known| is_like(known, loss)) {
-            Some(known) => known.subject = format!("{}, {}", known.subject, loss.subject),
-            None => sentences.push(loss.clone()),
+        match sentences.iter().position(|known| is_like(known, loss)) {
+            Some(known) => subjects[known].push(&loss.subject),
+            None => {
+                sentences.push(loss.clone());
+                subjects.push(vec![&loss.subject]);
+            }
         }
     }
+    for (sentence, subjects) in sentences.iter_mut().zip(subjects) {
+        sentence.subject = enumerated(&subjects);
+    }
     sentences
+}
+
+/// The first of some names, and how many more there are.
+fn enumerated(names: &[&str]) -> String {
+    const MOST: usize = 20;
+    let shown = names[..names.len().min(MOST)].join(", ");
+    if names.len() > MOST { format!("{shown} and {} more", names.len() - MOST) } else { shown }
 }
 
 /// Whether two losses differ in what is lost only, and nothing was counted or measured.

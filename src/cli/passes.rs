@@ -1,5 +1,6 @@
 //! The table of passes, as text and as JSON.
 
+use super::ui::printable;
 use lwc::{PassKind, StreamInfo};
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -49,7 +50,7 @@ pub fn print_attributes(mut out: impl Write, info: &StreamInfo, bytes: &[u64]) -
         let size = bytes.get(i).map_or(String::new(), |&bytes| {
             format!(", {bytes} bytes, {:.2} bits per vertex", bits_per_vertex(bytes, info))
         });
-        let (name, bits, domain) = (&attribute.name, attribute.bits, attribute.domain);
+        let (name, bits, domain) = (printable(&attribute.name), attribute.bits, attribute.domain);
         writeln!(out, "attribute   {name}: {} × {bits} bits of {domain}{size}", attribute.num_components)?;
     }
     Ok(())

@@ -6,7 +6,10 @@
 /// If there can be no such thread.
 #[cfg(unix)]
 pub fn watch() -> anyhow::Result<()> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGINT, SIGTERM, SIGXFSZ};
+    use std::sync::{Arc, atomic::AtomicBool};
+    // Past the largest size of a file (`ulimit -f`) writing fails then, and the error is told.
+    signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM])?;
     let wait = move || {
         if let Some(signal) = signals.forever().next() {

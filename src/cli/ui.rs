@@ -76,6 +76,7 @@ impl Ui {
         let style =
             if is_coloured { Style::new().bold().fg_color(Some(colour.into())) } else { Style::new() };
         // If standard error is closed there is nowhere to complain.
+        let text = printable(text);
         let _ = self.screen.beside(|| writeln!(io::stderr(), "{style}{label}{style:#}{text}"));
     }
 
@@ -87,5 +88,25 @@ impl Ui {
     /// Writes to standard output, which may be the terminal of the bar.
     pub fn beside_bar<T>(&self, write: impl FnOnce() -> T) -> T {
         self.screen.beside(write)
+    }
+}
+
+/// A text as a terminal may have it: names out of files and streams may hold control characters, and such as change the
+/// direction of a text.
+pub fn printable(text: &str) -> String {
+    let is_hidden = |c: char| {
+        c != '\n' && c.is_control()
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    text.replace(is_hidden, "\u{fffd}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::printable;
+
+    #[test]
+    fn names_cannot_reach_for_the_terminal() {
+        assert_eq!(printable("a\u{1b}[31mb\u{202e}c\u{9b}d\ne"), "a\u{fffd}[31mb\u{fffd}c\u{fffd}d\ne");
     }
 }

@@ -18,6 +18,9 @@ pub(super) fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOption
     let bits = match attribute.semantic {
         Semantic::Normal => options.normal_bits,
         Semantic::TexCoord(_) => options.texcoord_bits,
+        Semantic::Color(_) if is_linear_colour(attribute) => {
+            (options.color_bits + MORE_BITS_IF_LINEAR).min(MAX_BITS)
+        }
         Semantic::Color(_) => options.color_bits,
         _ => options.generic_bits,
     };
@@ -42,6 +45,14 @@ pub(super) fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOption
         return Some(Coding::Uniform { bits, minimum, step: 1.0 / steps });
     }
     Some(span.in_steps(bits))
+}
+
+/// Bits that colours need in addition where equal steps are steps of light: the eye tells dark ones better.
+const MORE_BITS_IF_LINEAR: u32 = 4;
+
+/// Colours of glTF that are not in 8 bits already.
+fn is_linear_colour(attribute: &Attribute) -> bool {
+    attribute.name.starts_with("COLOR_") && attribute.values.component_type() != Some(ComponentType::U8)
 }
 
 /// Numbers that tell triangles apart, or their materials, groups and objects.
@@ -130,6 +141,7 @@ impl Span {
         let steps = f64::from((1_u32 << bits) - 1);
         // A range beyond double precision is quantized in halves.
         let step = if self.range.is_finite() { self.range / steps } else { f64::MAX / steps * 2.0 };
+        let step = step.min(f64::MAX);
         let step = if step > 0.0 { step } else { 1.0 };
         Coding::Uniform { bits, minimum: self.minimum(), step }
     }

@@ -141,7 +141,7 @@ impl Losses {
         // How an area vector in cells is stretched to one in model units.
         let stretch = [y * z, z * x, x * y];
         // Near 1, so that products neither overflow nor vanish.
-        let unit = unit_near(grid.side());
+        let unit = unit_near(grid.side().min(longest_side(mesh)));
         let of_triangle = |triangle: &[u32; 3]| {
             let corners = triangle.map(|v| mesh.positions()[v as usize]);
             let (before, after) = (area(corners, unit), on_grid(corners.map(|p| grid.cell(p))));
@@ -170,6 +170,12 @@ impl Losses {
     pub(super) fn are_many(self) -> bool {
         self.lost() as f64 > MOST_LOST * self.all as f64
     }
+}
+
+/// The longest side of the box around all vertices.
+fn longest_side(mesh: &TriMesh) -> f64 {
+    let (low, high) = mesh.bounding_box().unwrap_or_default();
+    (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max)
 }
 
 /// Steps as shares of the largest; 1 if there is none.
@@ -230,6 +236,12 @@ mod tests {
         let flat = TriMesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]], vec![[0, 1, 2]]).unwrap();
         let found = measure(&flat, Grid::cube(1, [0.0; 3], 2.0));
         assert_eq!((found.triangles_lost(), found.num_triangles), (0, 1));
+    }
+
+    #[test]
+    fn a_grid_without_any_relation_to_the_mesh_takes_it_all() {
+        let lost = |side| Losses::of(&strip(0.1), &Grid::cube(4, [0.0; 3], side)).lost();
+        assert_eq!([1e100, 1e200, 1e300].map(lost), [2; 3]);
     }
 
     #[test]

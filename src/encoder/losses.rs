@@ -11,7 +11,7 @@ pub(super) fn of_positions(error: &GridError) -> Losses {
     let mut losses = Losses::default();
     if error.largest_error > 0.0 {
         let rounded = loss(LossKind::PositionsRounded, "").at_most(error.largest_error);
-        losses.push(rounded.in_edges(error.largest_error_in_edges));
+        losses.push(rounded.in_edges(error.largest_error_in_edges).remedy("`--lossless` keeps them"));
     }
     for (kind, count) in [
         (LossKind::TrianglesCollapsed, error.triangles_collapsed),
@@ -29,7 +29,10 @@ fn remedy(error: &GridError) -> String {
     match error.remedy {
         _ if !error.is_too_coarse() => String::new(),
         Some(Remedy::Bits(bits)) => format!("the grid is too coarse, `-q {bits}` keeps them"),
-        Some(Remedy::Step([x, y, z])) => format!("the grid is too coarse, `--step {x},{y},{z}` keeps them"),
+        Some(Remedy::Step([x, y, z])) if x == y && y == z => {
+            format!("the grid is too coarse, a step of {x} keeps them")
+        }
+        Some(Remedy::Step([x, y, z])) => format!("the grid is too coarse, steps of {x}, {y}, {z} keep them"),
         None => "the grid is too coarse, `--lossless` keeps them".to_owned(),
     }
 }
@@ -52,7 +55,7 @@ pub(super) fn beside_positions(
     let rounded = quantized.list.iter().filter_map(|attribute| attribute.rounding.as_ref());
     rounded.for_each(|rounding| losses.push(rounding.clone()));
     if !options.keep_order {
-        losses.push(loss(LossKind::Reordered, ""));
+        losses.push(loss(LossKind::Reordered, "").remedy("`--keep-order` keeps them"));
     }
     losses
 }

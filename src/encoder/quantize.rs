@@ -118,8 +118,8 @@ pub(super) fn on_lattice(bounds: &Bounds, lattice: Lattice) -> Result<Grid, Enco
             && last[a].abs() <= MAX_OFFSET as f64
             && last[a] - first[a] <= most
     };
-    if let Some(axis) = (0..3).find(|&axis| !fits(axis)) {
-        return Err(too_fine(bounds, lattice, axis));
+    if (0..3).any(|axis| !fits(axis)) {
+        return Err(too_fine(bounds, lattice));
     }
     let cells = (0..3).map(|a| (last[a] - first[a]) as u32).fold(1, u32::max);
     let offset = first.map(|k| k as i64);
@@ -130,18 +130,28 @@ pub(super) fn on_lattice(bounds: &Bounds, lattice: Lattice) -> Result<Grid, Enco
     Some(grid).filter(Grid::is_sound).ok_or(EncodeError::BoundingBox)
 }
 
-/// What to say of a step that is too small for the points.
-fn too_fine(bounds: &Bounds, Lattice { origin, step }: Lattice, axis: usize) -> EncodeError {
+/// What to say of steps that are too small for the points: of the axis where most is missing.
+fn too_fine(bounds: &Bounds, lattice: Lattice) -> EncodeError {
+    let smallest = [0, 1, 2].map(|axis| smallest_step(bounds, lattice.origin, axis));
+    if !smallest.iter().all(|step| step.is_finite()) {
+        return EncodeError::BoundingBox;
+    }
+    let missing = |axis: usize| smallest[axis] / lattice.step[axis];
+    let axis = (0..3).fold(0, |most, axis| if missing(axis) > missing(most) { axis } else { most });
+    EncodeError::StepTooSmall {
+        axis: ['x', 'y', 'z'][axis],
+        step: lattice.step[axis],
+        smallest: smallest[axis],
+    }
+}
+
+/// The smallest step along an axis with which 30 bits do, and a little more: three digits of it are shown.
+fn smallest_step(bounds: &Bounds, origin: [f64; 3], axis: usize) -> f64 {
     let (low, high) = (bounds.low[axis], bounds.high[axis]);
     let most = f64::from((1_u32 << MAX_QUANTIZATION_BITS) - 2);
     let by_extent = high / most - low / most;
     let by_place = (low - origin[axis]).abs().max((high - origin[axis]).abs()) / MAX_OFFSET as f64;
-    // Three digits are shown, of a number that is large enough however they are rounded.
-    let smallest = 1.01 * by_extent.max(by_place);
-    if !smallest.is_finite() {
-        return EncodeError::BoundingBox;
-    }
-    EncodeError::StepTooSmall { axis: ['x', 'y', 'z'][axis], step: step[axis], smallest }
+    1.01 * by_extent.max(by_place)
 }
 
 /// A power of two that brings `side` near 1.

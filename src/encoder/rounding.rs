@@ -24,7 +24,7 @@ pub(super) fn rounding(
     let (count, largest) = errors.fold((0, 0.0), |(n, largest), error| (n + 1, error.max(largest)));
     let loss = || Loss::new(Stage::Encoding, LossKind::ValuesRounded, &attribute.name);
     let rounded = || loss().count(count).of(used.len());
-    (count > 0).then(|| rounded().at_most(largest))
+    (count > 0).then(|| rounded().at_most(largest).remedy("`--lossless` keeps them"))
 }
 
 /// The numbers that channels stand for; `None` for names.

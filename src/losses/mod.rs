@@ -14,6 +14,8 @@
 
 mod sentence;
 
+use std::collections::HashSet;
+
 /// Where something is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stage {
@@ -229,12 +231,15 @@ impl Loss {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Losses {
     list: Vec<Loss>,
+    /// What is in the list: a hostile stream may name very much.
+    known: HashSet<(Stage, LossKind, String)>,
 }
 
 impl Losses {
     /// Adds one. Equal ones are one.
     pub fn push(&mut self, loss: Loss) {
-        if !self.list.contains(&loss) {
+        let is_new = self.known.insert((loss.stage, loss.kind, loss.subject.clone()));
+        if is_new || !self.list.contains(&loss) {
             self.list.push(loss);
         }
     }

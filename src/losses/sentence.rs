@@ -33,7 +33,8 @@ impl fmt::Display for Loss {
 impl Loss {
     /// What happens to what and to how many.
     fn what(&self) -> String {
-        let subject = &self.subject;
+        // It may be a name out of a hostile file: nothing in it may reach for a terminal.
+        let subject = &self.subject.replace(is_unprintable, "\u{fffd}");
         match self.kind {
             LossKind::Dropped => format!("left out: {subject}{}", self.count_behind()),
             LossKind::PositionsRounded => format!("{} rounded{}", self.counted("position"), to(subject)),
@@ -78,6 +79,11 @@ impl Loss {
             (None, _) => String::new(),
         }
     }
+}
+
+/// Control characters, and those that change the direction of a text.
+fn is_unprintable(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 fn to(subject: &str) -> String {

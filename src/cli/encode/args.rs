@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// Encode a mesh (.obj .ply .stl .glb .gltf) or a terrain point cloud (.las .laz), plain or compressed (.gz .zst).
 ///
-/// The finest level is the mesh with its vertices rounded to a grid: 2^BITS cells along its longest side (`-q`), or steps in
+/// The finest level is the mesh with its vertices rounded to a grid: 2^BITS − 1 steps along its longest side (`-q`), or steps in
 /// units of the model (`--step`, `--precision`, `--grid`). Every triangle comes back, with its orientation. Warnings count what has to be dropped or cut.
 #[derive(Debug, clap::Args)]
 pub struct Encode {

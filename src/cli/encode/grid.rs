@@ -18,9 +18,10 @@ pub struct GridArgs {
     #[arg(long, value_name = "STEP|X,Y,Z", value_parser = steps, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["quantization_bits", "precision", "grid", "cubic_grid"])]
     pub step: Option<Steps>,
-    /// Move no coordinate by more than LENGTH: steps of twice that. In units of the model, or as 1mm, 0.5cm or 0.01in.
+    /// Move no coordinate by more than LENGTH, and so no vertex by more than 1.74 times that: steps of twice LENGTH. In units of the model, or as 1mm, 0.5cm or 0.01in.
     ///
-    /// A length with a unit needs the unit of the model: glTF is in metres, for all other files say it with `--unit`. In a
+    /// A length with a unit needs the unit of the model: glTF is in metres, for all other files say it with `--unit`, which also
+    /// counts for glTF if it is given. In a
     /// scene it holds for every instance.
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["quantization_bits", "grid", "cubic_grid"])]
@@ -62,13 +63,13 @@ pub enum Asked {
 }
 
 impl GridArgs {
-    /// What the options ask for; `input` is the model.
+    /// What the options ask for of these models.
     ///
     /// # Errors
     /// If the unit of the model is not known, or the stream with the grid cannot be read.
-    pub fn asked(&self, input: &Path) -> anyhow::Result<Asked> {
+    pub fn asked<'a>(&self, inputs: impl Iterator<Item = &'a Path>) -> anyhow::Result<Asked> {
         if let Some(length) = self.precision {
-            return Ok(Asked::Precision(self.in_model_units(length, input)?));
+            return Ok(Asked::Precision(self.in_model_units(length, inputs)?));
         }
         let choice = match (&self.grid, self.step) {
             (Some(GridOf::Numbers(lattice)), _) => GridChoice::Lattice(*lattice),
@@ -80,15 +81,22 @@ impl GridArgs {
         Ok(Asked::Grid(choice))
     }
 
-    fn in_model_units(&self, length: Length, input: &Path) -> Result<f64, Failure> {
+    fn in_model_units<'a>(
+        &self,
+        length: Length,
+        mut inputs: impl Iterator<Item = &'a Path>,
+    ) -> Result<f64, Failure> {
         let Some(unit) = length.unit else {
             return match self.unit {
                 None => Ok(length.number),
                 Some(_) => Err(Failure::Usage("--unit needs a --precision with a unit, such as 1mm".into())),
             };
         };
-        let model = self.unit.or_else(|| unit_of(input));
-        let model = model.ok_or_else(|| Failure::Usage(unknown_unit(length, input)))?;
+        let unknown = inputs.find(|input| self.unit.is_none() && unit_of(input).is_none());
+        if let Some(input) = unknown {
+            return Err(Failure::Usage(unknown_unit(length, input)));
+        }
+        let model = self.unit.unwrap_or(Unit::METRE);
         Ok(length.number * unit.metres() / model.metres())
     }
 }
@@ -130,7 +138,7 @@ fn unknown_unit(length: Length, input: &Path) -> String {
     let Length { number, .. } = length;
     let unit = length.unit.map_or("", Unit::name);
     format!(
-        "--precision {number}{unit} needs the unit of the model, and {files}: add --unit m, cm, mm, in or ft"
+        "--precision {number}{unit} needs the unit of the model, and {files}: add --unit m, cm, mm, um, km, in or ft"
     )
 }
 

@@ -35,7 +35,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         destination.check(Some(input), false)?;
     }
     check_ending(&destination).with_context(|| destination.name())?;
-    let asked = args.grid.asked(&args.input)?;
+    let asked = args.grid.asked(args.inputs())?;
     let start = Instant::now();
     let bar = ui.bar();
     let verifying = if args.verify { 30.0 } else { 0.0 };
@@ -45,6 +45,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         Some(options) => read_terrain(&args.input, &options, &args.reading, reading, ui)?,
         None => args.stream_input().read(reading, ui)?,
     };
+    check_triangles(&file).with_context(|| args.input_name())?;
     let mut losses = file.report.losses();
     if args.no_attributes {
         losses.append(drop_attributes(&mut file));
@@ -72,7 +73,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     }
     drop(bar);
     losses.append(encoded.losses.clone());
-    args.strictness.check(&losses).with_context(|| name.clone())?;
+    args.strictness.check_or_print(&losses, args.json).with_context(|| name.clone())?;
     destination.write(|out| out.write_all(&encoded.bytes))?;
     let (file, encoded) = (&file, &encoded);
     let report = Report { args, file, losses, verified, encoded, destination, read_seconds, encode_seconds };
@@ -86,6 +87,18 @@ fn check_input(path: &Path) -> Result<(), Failure> {
         return Err(Failure::Input(io::Error::other("it is an lwc stream already")));
     }
     Ok(())
+}
+
+/// What has points alone is called that.
+fn check_triangles(file: &MeshFile) -> Result<(), Failure> {
+    let (points, triangles) = (file.mesh.num_vertices(), file.mesh.num_triangles());
+    if triangles > 0 || points == 0 {
+        return Ok(());
+    }
+    let points = counted(points, "point", "points");
+    Err(Failure::Input(io::Error::other(format!(
+        "a point cloud, which has no triangles to encode: {points}"
+    ))))
 }
 
 /// A stream under the ending of a mesh would be taken for one, and often replaces it.

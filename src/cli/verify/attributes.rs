@@ -75,6 +75,10 @@ fn places(of: impl Iterator<Item = usize>, triangles: &[[u32; 3]], cells: &[[i32
     places
 }
 
+fn is_in_bytes(attribute: &Attribute) -> bool {
+    attribute.values.component_type() == Some(lwc::mesh::ComponentType::U8)
+}
+
 /// Whether all numbers are whole and none is known to measure something: they come back exactly.
 fn names_things(attribute: &Attribute) -> bool {
     let measures = matches!(attribute.name.as_str(), "intensity" | "nir");
@@ -121,6 +125,9 @@ impl<'a> Pair<'a> {
         let bits = match wanted.semantic {
             Semantic::Normal => options.normal_bits,
             Semantic::TexCoord(_) => options.texcoord_bits,
+            Semantic::Color(_) if wanted.name.starts_with("COLOR_") && !is_in_bytes(wanted) => {
+                (options.color_bits + 4).min(30)
+            }
             Semantic::Color(_) => options.color_bits,
             _ => options.generic_bits,
         };
@@ -143,7 +150,13 @@ impl<'a> Pair<'a> {
         Ok(Self { mesh, decoded, wanted, found, tolerance, are_directions })
     }
 
-    fn agree(&self, &(_, t, turn): &Place, &(_, other, other_turn): &Place) -> bool {
+    /// A triangle of which all corners are in one cell may begin with any of them.
+    fn agree(&self, &(cells, t, turn): &Place, &(_, other, other_turn): &Place) -> bool {
+        let turns = if cells == [cells[0]; 3] { 3 } else { 1 };
+        (0..turns).any(|more| self.agree_turned((t, turn + more), (other, other_turn)))
+    }
+
+    fn agree_turned(&self, (t, turn): (usize, usize), (other, other_turn): (usize, usize)) -> bool {
         (0..3).all(|c| {
             let row = self.wanted.entry_at_corner(self.mesh, t, (turn + c) % 3);
             let found = self.found.entry_at_corner(self.decoded, other, (other_turn + c) % 3);
