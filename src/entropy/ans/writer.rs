@@ -44,6 +44,7 @@ impl SymbolWriter {
         }
         let (states, words) = self.states_and_words(&intervals);
         let head = head.finish();
+        if std::env::var("DBG").is_ok() { let n: Vec<usize> = (0..self.groups.len()).map(|g| self.symbols.iter().filter(|s| usize::from(s.group) == g).count()).collect(); let bits: Vec<f64> = (0..self.groups.len()).map(|g| self.symbols.iter().filter(|s| usize::from(s.group) == g).map(|s| { let (l, iv) = &intervals[g]; let f = iv[usize::from(l[s.context as usize])][usize::from(s.symbol)].frequency; -(f64::from(f)/1024.0).log2() }).sum::<f64>() / 8.0).collect(); let tables: Vec<usize> = intervals.iter().map(|i| i.1.len()).collect(); eprintln!("head {} words {} raw {} symbols {n:?} bytes {bits:.0?} tables {tables:?}", head.len(), words.len() * 2, self.raw.clone().finish().len()); }
         let mut payload = Vec::new();
         write_varint(&mut payload, head.len() as u32);
         payload.extend(head);

@@ -25,10 +25,22 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// Means over meshes of several kinds, see the test `defaults_of_a_corpus`.
+    /// Medians of the weights that are fitted to scans, CAD parts, models and terrain: `benches/weights.py` makes them.
     pub(super) const DEFAULT: Self = Self {
-        predictions: [[[19, 19, 0, 0]; NUM_SIDES]; CLASSES],
-        sizes: [[-20, 10, 25, 15, 10, 5, -5, 5]; NUM_KINDS],
+        predictions: [
+            [[34, 19, 0, 0], [19, 19, 0, 0]],
+            [[-2, 6, 0, 0], [1, 20, 0, 0]],
+            [[-4, 4, -2, 0], [4, 70, -1, 0]],
+            [[-4, 13, 0, 8], [3, 60, 1, 3]],
+            [[6, 20, -2, 7], [10, 46, 1, 14]],
+            [[13, 21, -3, 1], [19, 19, 2, 0]],
+            [[19, 19, 0, 0], [19, 19, 0, 0]],
+        ],
+        sizes: [
+            [84, 9, 6, 2, 15, 5, -58, 7],
+            [82, 9, 2, 1, 18, 8, -49, 7],
+            [55, -15, 19, 7, 5, 10, -18, 4],
+        ],
     };
 
     /// Codes how far weights are from the defaults; `None` if what is read is beyond all bounds.

@@ -15,8 +15,8 @@ use crate::passes::base::BaseTarget;
 use crate::passes::base_positions::Base;
 use crate::passes::work_budget::WorkBudget;
 
-/// Share of the bytes that looking for repeated coordinates must save, as it takes time.
-const WORTH_LOOKING: usize = 100;
+/// One over the share of the bytes that looking for repeated coordinates must save, as it takes time.
+const WORTH_LOOKING: usize = 50;
 
 /// Codes nothing.
 struct Nowhere;
@@ -106,6 +106,7 @@ pub(crate) fn write(target: &BaseTarget, quantization_bits: u32) -> Result<(Base
     let cells = vertex_source.iter().map(|&v| target.positions[v as usize]).collect();
     let mut places = Places { grown: Some(growth.finish()?), cells, quantization_bits };
     let weights = places.fit()?;
+    if std::env::var("DBG").is_ok() { eprintln!("WEIGHTS {:?} {:?}", weights.predictions, weights.sizes); let mut h = RangeEncoder::new(); Weights::code(&mut h, Some(&weights)); eprintln!("weights {} bytes", h.finish().len()); }
     let mut payload = places.write(writer.clone(), &weights, false)?;
     let with_repeated = places.write(writer.clone(), &weights, true)?;
     if with_repeated.len() + with_repeated.len() / WORTH_LOOKING < payload.len() {
