@@ -44,7 +44,6 @@ impl SymbolWriter {
         }
         let (states, words) = self.states_and_words(&intervals);
         let head = head.finish();
-        if std::env::var("DBG").is_ok() { let n: Vec<usize> = (0..self.groups.len()).map(|g| self.symbols.iter().filter(|s| usize::from(s.group) == g).count()).collect(); let bits: Vec<f64> = (0..self.groups.len()).map(|g| self.symbols.iter().filter(|s| usize::from(s.group) == g).map(|s| { let (l, iv) = &intervals[g]; let f = iv[usize::from(l[s.context as usize])][usize::from(s.symbol)].frequency; -(f64::from(f)/1024.0).log2() }).sum::<f64>() / 8.0).collect(); let tables: Vec<usize> = intervals.iter().map(|i| i.1.len()).collect(); eprintln!("head {} words {} raw {} symbols {n:?} bytes {bits:.0?} tables {tables:?}", head.len(), words.len() * 2, self.raw.clone().finish().len()); }
         let mut payload = Vec::new();
         write_varint(&mut payload, head.len() as u32);
         payload.extend(head);
@@ -126,14 +125,18 @@ mod tests {
         Group { alphabet: NUM_TOKENS, attributes: &[2], most_tables: 2 },
     ];
 
-    fn code(coder: &mut impl SymbolCoder, count: u32) -> bool {
-        (0..count).all(|i| {
+    /// Codes so many of each; returns how many were as wanted.
+    fn code(coder: &mut impl SymbolCoder, count: u32) -> u32 {
+        let same = (0..count).map(|i| {
             let noise = i.wrapping_mul(2_654_435_761) >> 13;
             let symbol = (noise % 5).min(i % 4) as u8;
             let number = (noise % 100_000) >> (noise % 17);
             let is_symbol = coder.symbol(0, (i % 12) as usize, symbol) == symbol;
-            is_symbol && coder.number(1, (i % 2) as usize, number) == number && coder.raw(i % 8, 3) == i % 8
-        })
+            let is_number = coder.number(1, (i % 2) as usize, number) == number;
+            let is_raw = coder.raw(i % 8, 3) == i % 8;
+            u32::from(is_symbol && is_number && is_raw)
+        });
+        same.sum()
     }
 
     fn write(count: u32) -> Vec<u8> {
@@ -156,7 +159,8 @@ mod tests {
             for _ in 0..2 {
                 let mut reader = open(&payload).unwrap();
                 let mut coder = reader.resume(&payload);
-                assert!(code(&mut coder, count) && coder.is_at_end() && !coder.is_exhausted());
+                assert_eq!(code(&mut coder, count), count);
+                assert!(coder.is_at_end() && !coder.is_exhausted());
                 // Read further.
                 code(&mut coder, 40);
                 assert!(!coder.is_at_end());
@@ -165,7 +169,8 @@ mod tests {
             payload.push(1);
             let mut reader = open(&payload).unwrap();
             let mut coder = reader.resume(&payload);
-            assert!(code(&mut coder, count) && !coder.is_at_end(), "a byte too many");
+            assert_eq!(code(&mut coder, count), count);
+            assert!(!coder.is_at_end(), "a byte too many");
         }
     }
 

@@ -87,13 +87,13 @@ impl Front {
     }
 
     /// Adds the triangle to a vertex on no loop beyond `gate`.
-    pub(super) fn add_new(&mut self, gate: u32, tip: u32) -> NewGates {
+    pub(super) fn add_new(&mut self, gate: u32, tip: u32) -> Result<NewGates, Malformed> {
         let [s, e] = [self.before(gate), self.after(gate)];
-        let [_, p, q] = self.attach(gate, tip);
+        let [_, p, q] = self.attach(gate, tip)?;
         self.link(s, p);
         self.link(p, q);
         self.link(q, e);
-        [Some(p), Some(q)]
+        Ok([Some(p), Some(q)])
     }
 
     /// Adds the triangle to the vertex before the pivot, which is enclosed then.
@@ -102,9 +102,9 @@ impl Front {
         let outer = self.before(s);
         let is_last = outer == e;
         if !self.is_open(s) || s == e || (is_last && !self.is_open(e)) {
-            return Err(TWICE);
+            return Err(NOT_OPEN);
         }
-        let [_, p, q] = self.attach(gate, self.start(s));
+        let [_, p, q] = self.attach(gate, self.start(s))?;
         self.glue(p, s);
         if is_last {
             self.glue(q, e);
@@ -120,9 +120,9 @@ impl Front {
         let [s, e] = [self.before(gate), self.after(gate)];
         let outer = self.after(e);
         if !self.is_open(e) || s == e || outer == s {
-            return Err(TWICE);
+            return Err(NOT_OPEN);
         }
-        let [_, p, q] = self.attach(gate, self.end(e));
+        let [_, p, q] = self.attach(gate, self.end(e))?;
         self.glue(q, e);
         self.link(s, p);
         self.link(p, outer);
@@ -131,13 +131,9 @@ impl Front {
 
     /// Adds the triangle to the vertex where the edge of a loop starts that `at` faces: loops are split or joined.
     pub(super) fn add_far(&mut self, gate: u32, at: u32) -> Result<NewGates, Malformed> {
-        let tip = self.start(at);
-        if tip == self.start(gate) || tip == self.end(gate) {
-            return Err(TWICE);
-        }
         let [s, e] = [self.before(gate), self.after(gate)];
         let outer = self.before(at);
-        let [_, p, q] = self.attach(gate, tip);
+        let [_, p, q] = self.attach(gate, self.start(at))?;
         self.link(s, p);
         self.link(p, at);
         self.link(outer, q);
@@ -162,11 +158,15 @@ impl Front {
     }
 
     /// Adds the triangle beyond a gate, and glues it to that.
-    fn attach(&mut self, gate: u32, tip: u32) -> [u32; 3] {
-        let corners = self.add([tip, self.end(gate), self.start(gate)]);
+    fn attach(&mut self, gate: u32, tip: u32) -> Result<[u32; 3], Malformed> {
+        let (pivot, end) = (self.start(gate), self.end(gate));
+        if tip == pivot || tip == end {
+            return Err(TWICE);
+        }
+        let corners = self.add([tip, end, pivot]);
         self.links.extend([[NO_CORNER; 2]; 3]);
         self.glue(corners[0], gate);
-        corners
+        Ok(corners)
     }
 
     #[inline(always)]
@@ -182,4 +182,5 @@ impl Front {
     }
 }
 
+const NOT_OPEN: Malformed = Malformed("the base mesh names an edge that is not open");
 const TWICE: Malformed = Malformed("a base triangle names a vertex twice");

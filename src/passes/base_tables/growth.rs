@@ -150,7 +150,7 @@ impl Growth {
             }
             Tip::New => {
                 let vertex = self.add_vertex()?;
-                self.front.add_new(gate, vertex)
+                self.front.add_new(gate, vertex)?
             }
             Tip::BesidePivot => front.add_beside_pivot(gate)?,
             Tip::BesideEnd => front.add_beside_end(gate)?,

@@ -8,7 +8,7 @@ use super::weights::{Factors, Weights};
 use crate::entropy::ans::models;
 use crate::entropy::ans::reader::PausedReader;
 use crate::passes::work_budget::WorkBudget;
-use crate::passes::{GridMesh, Malformed};
+use crate::passes::{EXHAUSTED, GridMesh, Malformed};
 
 /// Bytes of memory that models take at most.
 pub(crate) const MEMORY_OF_MODELS: u64 = models::memory(GROUPS);
@@ -50,6 +50,9 @@ impl BaseInTables {
     ) -> Result<Option<GridMesh>, Malformed> {
         let coder = &mut self.reader.resume(payload);
         while work.is_left() {
+            if coder.is_exhausted() {
+                return Err(Malformed(EXHAUSTED));
+            }
             self.stage = match std::mem::replace(&mut self.stage, Stage::Over) {
                 Stage::Growing(mut growth) => {
                     if growth.code_some(coder, &mut (), work)? {

@@ -69,22 +69,18 @@ impl Outlook {
 
         let parallelograms = &around.parallelograms[..];
         let (mut mean, mut spread, mut normal) = (ring_mean, Lanes::ZERO, Lanes::ZERO);
-        let mut features = [around.misses * share, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO];
-        if let Some(&first) = parallelograms.first() {
-            let (mut sum, mut oldest) = (Lanes::ZERO, first);
+        let mut features = [around.misses * share, Lanes::ZERO, Lanes::ZERO];
+        if !parallelograms.is_empty() {
+            let mut sum = Lanes::ZERO;
             for p in parallelograms {
                 sum += p.end;
                 normal += (p.a - p.b).cross(p.tip - p.b);
-                if p.age < oldest.age {
-                    oldest = *p;
-                }
             }
             mean = sum * (1.0 / parallelograms.len() as f32);
             let (median, range) = median(around);
             spread = range;
             features[1] = (ring_mean - mean) * 0.5;
-            features[2] = oldest.end - mean;
-            features[3] = median - mean;
+            features[2] = median - mean;
         }
         if normal.dot3(normal) == 0.0 {
             normal = polygon(&around.ring, ring_mean);
@@ -96,8 +92,8 @@ impl Outlook {
         let axes = axis_order(normal);
         let [along, across] = factors.predictions[class];
         let corrected = |weights: [f32; NUM_FEATURES]| {
-            let [a, b, c, d]: [Lanes; NUM_FEATURES] = std::array::from_fn(|i| features[i] * weights[i]);
-            mean + ((a + b) + (c + d))
+            let [a, b, c]: [Lanes; NUM_FEATURES] = std::array::from_fn(|i| features[i] * weights[i]);
+            mean + ((a + b) + c)
         };
         let log_length = rough_log2(length);
         let by =

@@ -2,7 +2,7 @@
 
 use super::growth::Grown;
 use super::order::{MOST, Order};
-use crate::mesh::surface::{NO_CORNER, next, prev};
+use crate::mesh::surface::NO_CORNER;
 use crate::passes::Malformed;
 use crate::util::simd4::Lanes;
 
@@ -54,8 +54,6 @@ pub(super) struct Parallelogram {
     pub(super) a: Lanes,
     pub(super) b: Lanes,
     pub(super) tip: Lanes,
-    /// The later one of the two vertices of the edge.
-    pub(super) age: u32,
 }
 
 /// What is around a vertex. Points are relative to `origin`, the cell of the first neighbour that has its place.
@@ -197,8 +195,8 @@ impl Surroundings {
             a.is_tip_placed = known.is_placed();
             if a.is_tip_placed {
                 let tip = Lanes::between(self.origin, known.position);
-                let (end, age) = ((a.point + b.point) - tip, a.vertex.max(b.vertex));
-                self.parallelograms.push(Parallelogram { end, a: a.point, b: b.point, tip, age });
+                let end = (a.point + b.point) - tip;
+                self.parallelograms.push(Parallelogram { end, a: a.point, b: b.point, tip });
                 add(&mut self.tip_roughness, known.roughness);
             }
         }
@@ -208,28 +206,17 @@ impl Surroundings {
     /// Lists the neighbours counter-clockwise, of an open fan from its boundary on.
     #[inline(always)]
     fn walk(&mut self, grown: &Grown, vertex: u32) {
-        let at = |corner: u32| grown.triangles.as_flattened()[corner as usize];
-        let across = |corner: u32| grown.opposite[corner as usize];
-        let neighbour = |corner: u32| {
-            let tip = across(corner);
-            Neighbour {
-                vertex: at(next(corner)),
-                tip: if tip == NO_CORNER { NO_CORNER } else { at(tip) },
-                is_placed: false,
-                is_tip_placed: false,
-                point: Lanes::ZERO,
-            }
-        };
         self.fan.clear();
-        let first = grown.corner_of[vertex as usize];
+        let first = Corner::of(grown.corner_of[vertex as usize]);
         let mut corner = first;
+        let mut triangle;
         self.is_closed = loop {
-            self.fan.push(neighbour(corner));
-            let left = across(next(corner));
-            if left == NO_CORNER {
+            triangle = Triangle::of(grown, corner);
+            self.fan.push(triangle.neighbour(grown));
+            if triangle.left == NO_CORNER {
                 break false;
             }
-            corner = next(left);
+            corner = Corner::of(triangle.left).next();
             if corner == first {
                 break true;
             }
@@ -238,15 +225,76 @@ impl Surroundings {
             return;
         }
         // The edge at which the fan ends has no triangle beyond it.
-        self.fan.push(Neighbour { vertex: at(prev(corner)), tip: NO_CORNER, ..neighbour(corner) });
+        self.fan.push(Neighbour { vertex: triangle.last, tip: NO_CORNER, ..triangle.neighbour(grown) });
         let after = self.fan.len();
-        let mut right = across(prev(first));
+        let mut right = Triangle::of(grown, first).right;
         while right != NO_CORNER {
-            self.fan.push(neighbour(prev(right)));
-            right = across(prev(prev(right)));
+            triangle = Triangle::of(grown, Corner::of(right).next().next());
+            self.fan.push(triangle.neighbour(grown));
+            right = triangle.right;
         }
         self.fan[after..].reverse();
         self.fan.rotate_left(after);
+    }
+}
+
+/// A corner, taken apart once.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Corner {
+    triangle: u32,
+    index: usize,
+}
+
+const NEXT: [usize; 3] = [1, 2, 0];
+const PREV: [usize; 3] = [2, 0, 1];
+
+impl Corner {
+    #[inline(always)]
+    fn of(corner: u32) -> Self {
+        Self { triangle: corner / 3, index: (corner % 3) as usize }
+    }
+
+    #[inline(always)]
+    fn next(self) -> Self {
+        Self { index: NEXT[self.index], ..self }
+    }
+}
+
+/// A triangle seen from one of its vertices.
+#[derive(Clone, Copy)]
+struct Triangle {
+    first: u32,
+    last: u32,
+    /// Corners across the edge away from the vertex, the one behind, and the one ahead.
+    across: u32,
+    right: u32,
+    left: u32,
+}
+
+impl Triangle {
+    #[inline(always)]
+    fn of(grown: &Grown, corner: Corner) -> Self {
+        let Corner { triangle, index } = corner;
+        let vertices = &grown.triangles[triangle as usize];
+        let opposite = &grown.opposite.as_chunks::<3>().0[triangle as usize];
+        let (next, prev) = (NEXT[index], PREV[index]);
+        Self {
+            first: vertices[next],
+            last: vertices[prev],
+            across: opposite[index],
+            right: opposite[prev],
+            left: opposite[next],
+        }
+    }
+
+    /// The neighbour at which it begins.
+    #[inline(always)]
+    fn neighbour(&self, grown: &Grown) -> Neighbour {
+        let tip = match self.across {
+            NO_CORNER => NO_CORNER,
+            across => grown.triangles.as_flattened()[across as usize],
+        };
+        Neighbour { vertex: self.first, tip, is_placed: false, is_tip_placed: false, point: Lanes::ZERO }
     }
 }
 

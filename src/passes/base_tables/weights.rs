@@ -5,7 +5,7 @@ use crate::entropy::numbers::Numbers;
 use crate::entropy::range_coder::BitCoder;
 
 /// Corrections of the mean of the parallelograms that have weights.
-pub(super) const NUM_FEATURES: usize = 4;
+pub(super) const NUM_FEATURES: usize = 3;
 /// What tells how large a residual is.
 pub(super) const NUM_CUES: usize = 8;
 /// Along the surface and across it.
@@ -28,19 +28,15 @@ impl Weights {
     /// Medians of the weights that are fitted to scans, CAD parts, models and terrain: `benches/weights.py` makes them.
     pub(super) const DEFAULT: Self = Self {
         predictions: [
-            [[34, 19, 0, 0], [19, 19, 0, 0]],
-            [[-2, 6, 0, 0], [1, 20, 0, 0]],
-            [[-4, 4, -2, 0], [4, 70, -1, 0]],
-            [[-4, 13, 0, 8], [3, 60, 1, 3]],
-            [[6, 20, -2, 7], [10, 46, 1, 14]],
-            [[13, 21, -3, 1], [19, 19, 2, 0]],
-            [[19, 19, 0, 0], [19, 19, 0, 0]],
+            [[34, 19, 0], [19, 19, 0]],
+            [[-2, 6, 0], [1, 20, 0]],
+            [[-4, 4, 0], [4, 70, 0]],
+            [[-4, 13, 8], [3, 60, 3]],
+            [[6, 20, 7], [10, 46, 14]],
+            [[13, 21, 1], [19, 19, 0]],
+            [[19, 19, 0], [19, 19, 0]],
         ],
-        sizes: [
-            [84, 9, 6, 2, 15, 5, -58, 7],
-            [82, 9, 2, 1, 18, 8, -49, 7],
-            [55, -15, 19, 7, 5, 10, -18, 4],
-        ],
+        sizes: [[84, 9, 6, 2, 15, 5, -58, 7], [82, 9, 2, 1, 18, 8, -49, 7], [55, -15, 19, 7, 5, 10, -18, 4]],
     };
 
     /// Codes how far weights are from the defaults; `None` if what is read is beyond all bounds.
