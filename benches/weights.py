@@ -19,8 +19,8 @@ import reference_decoder as reference
 
 def weights(mesh, folder):
     stream = folder / "mesh.lwc"
-    options = ["--profile", "fast", "--levels", "0", "--force", "--quiet"]
-    subprocess.run([ROOT / "target/release/lwc", "encode", mesh, stream, *options], check=True)
+    options = ["--profile", "fast", "--levels", "0", "--quiet"]
+    subprocess.run([ROOT / "target/release/lwc", "encode", mesh, "-o", stream, *options], check=True)
     data, rows = stream.read_bytes(), []
     for kind, payload in reference.chunks(data, rows):
         if kind == "L":

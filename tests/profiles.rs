@@ -6,7 +6,7 @@ mod common;
 
 use common::chunks;
 use common::exact::assert_round_trip;
-use common::kinds::every_kind;
+use common::kinds::{beside, every_kind};
 use common::*;
 use lwc::{
     DecodeError, Decoder, EncodeOptions, Limits, Optimize, Partition, Profile, Step, TriMesh, encode,

@@ -82,16 +82,17 @@ fn below<B: BitCoder>(coder: &mut B, count: usize, value: usize) -> Option<usize
 
 /// Gives a box of contexts its leaf.
 fn fill(leaves: &mut [u8], sizes: &[usize], ranges: &[(usize, usize)], leaf: u8) {
-    let (Some((&_, sizes)), Some((&(low, high), ranges))) = (sizes.split_first(), ranges.split_first())
-    else {
+    let (Some((_, sizes)), Some((&(low, high), ranges))) = (sizes.split_first(), ranges.split_first()) else {
         return;
     };
     let inner: usize = sizes.iter().product();
-    if ranges.is_empty() {
-        leaves[low..high].fill(leaf);
+    // What has all values of the other attributes lies side by side.
+    if sizes.iter().zip(ranges).all(|(&size, &range)| range == (0, size)) {
+        leaves[low * inner..high * inner].fill(leaf);
         return;
     }
-    (low..high).for_each(|i| fill(&mut leaves[i * inner..(i + 1) * inner], sizes, ranges, leaf));
+    let parts = leaves[low * inner..high * inner].chunks_exact_mut(inner);
+    parts.for_each(|part| fill(part, sizes, ranges, leaf));
 }
 
 #[cfg(test)]

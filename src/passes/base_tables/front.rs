@@ -7,7 +7,7 @@
 //!           pivot --- end
 //! ```
 
-use crate::mesh::surface::{NO_CORNER, next, prev};
+use crate::mesh::surface::NO_CORNER;
 use crate::passes::Malformed;
 
 /// Opposite of a corner that faces an edge of the boundary of the mesh.
@@ -16,10 +16,19 @@ const BORDER: u32 = NO_CORNER - 1;
 pub(super) struct Front {
     pub(super) triangles: Vec<[u32; 3]>,
     opposite: Vec<u32>,
-    /// Of each corner that faces an edge of a loop those that face the edges before and after it. An edge ends where the next
-    /// one starts.
-    links: Vec<[u32; 2]>,
+    /// The edge that each corner faces, as long as it is in a loop.
+    edges: Vec<Edge>,
     has_border: bool,
+}
+
+/// An edge of a loop. It ends where the one after it starts.
+#[derive(Clone, Copy)]
+struct Edge {
+    /// Corners that face the edges before and after it.
+    before: u32,
+    after: u32,
+    /// The vertex where it starts.
+    start: u32,
 }
 
 /// The corners of a new triangle that face edges of loops: one from the pivot, one to the gate's end.
@@ -30,35 +39,30 @@ impl Front {
         Self {
             triangles: Vec::with_capacity(num_faces),
             opposite: Vec::with_capacity(3 * num_faces),
-            links: Vec::with_capacity(3 * num_faces),
+            edges: Vec::with_capacity(3 * num_faces),
             has_border: false,
         }
     }
 
-    #[inline(always)]
-    pub(super) fn vertex(&self, corner: u32) -> u32 {
-        self.triangles.as_flattened()[corner as usize]
-    }
-
-    /// Where the edge that a corner faces starts.
+    /// Where the edge of a loop starts that a corner faces.
     #[inline(always)]
     pub(super) fn start(&self, corner: u32) -> u32 {
-        self.vertex(next(corner))
+        self.edges[corner as usize].start
     }
 
     #[inline(always)]
     pub(super) fn end(&self, corner: u32) -> u32 {
-        self.vertex(prev(corner))
+        self.start(self.after(corner))
     }
 
     #[inline(always)]
     pub(super) fn before(&self, corner: u32) -> u32 {
-        self.links[corner as usize][0]
+        self.edges[corner as usize].before
     }
 
     #[inline(always)]
     pub(super) fn after(&self, corner: u32) -> u32 {
-        self.links[corner as usize][1]
+        self.edges[corner as usize].after
     }
 
     /// True if what is beyond the edge has not been said.
@@ -81,8 +85,10 @@ impl Front {
     /// Adds a triangle on its own; returns its corners.
     pub(super) fn seed(&mut self, triangle: [u32; 3]) -> [u32; 3] {
         let [a, b, c] = self.add(triangle);
+        let [at_a, at_b, at_c] = triangle;
         // The edge that a corner faces starts at the next one.
-        self.links.extend([[c, b], [a, c], [b, a]]);
+        let edge = |before, after, start| Edge { before, after, start };
+        self.edges.extend_from_slice(&[edge(c, b, at_b), edge(a, c, at_c), edge(b, a, at_a)]);
         [a, b, c]
     }
 
@@ -153,7 +159,7 @@ impl Front {
     fn add(&mut self, triangle: [u32; 3]) -> [u32; 3] {
         let first = 3 * self.triangles.len() as u32;
         self.triangles.push(triangle);
-        self.opposite.extend([NO_CORNER; 3]);
+        self.opposite.extend_from_slice(&[NO_CORNER; 3]);
         [first, first + 1, first + 2]
     }
 
@@ -164,7 +170,8 @@ impl Front {
             return Err(TWICE);
         }
         let corners = self.add([tip, end, pivot]);
-        self.links.extend([[NO_CORNER; 2]; 3]);
+        let edge = |start| Edge { before: NO_CORNER, after: NO_CORNER, start };
+        self.edges.extend_from_slice(&[edge(end), edge(pivot), edge(tip)]);
         self.glue(corners[0], gate);
         Ok(corners)
     }
@@ -177,8 +184,8 @@ impl Front {
 
     #[inline(always)]
     fn link(&mut self, before: u32, after: u32) {
-        self.links[before as usize][1] = after;
-        self.links[after as usize][0] = before;
+        self.edges[before as usize].after = after;
+        self.edges[after as usize].before = before;
     }
 }
 

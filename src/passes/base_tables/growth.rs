@@ -130,7 +130,7 @@ impl Growth {
         let front = &self.front;
         let wanted = truth.beyond(front, gate);
         let [before, after] = [front.before(gate), front.after(gate)];
-        let ends = [front.start(gate), front.end(gate), front.start(before), front.end(after)];
+        let ends = [front.start(gate), front.start(after), front.start(before), front.end(after)];
         let [pivot, end, x, y] = ends.map(|v| self.around[v as usize]);
         let context = TipContext {
             pivot: pivot.faces as usize - 1,
@@ -178,9 +178,10 @@ impl Growth {
 
     /// Counts the last triangle at its vertices.
     fn note_triangle(&mut self) {
-        let first = 3 * (self.front.triangles.len() as u32 - 1);
-        for corner in first..first + 3 {
-            let around = &mut self.around[self.front.vertex(corner) as usize];
+        let count = self.front.triangles.len() as u32;
+        let Some(triangle) = self.front.triangles.last() else { return };
+        for (corner, &vertex) in (3 * (count - 1)..).zip(triangle) {
+            let around = &mut self.around[vertex as usize];
             around.faces += 1;
             around.corner = corner;
         }

@@ -28,15 +28,19 @@ impl Weights {
     /// Medians of the weights that are fitted to scans, CAD parts, models and terrain: `benches/weights.py` makes them.
     pub(super) const DEFAULT: Self = Self {
         predictions: [
-            [[34, 19, 0], [19, 19, 0]],
-            [[-2, 6, 0], [1, 20, 0]],
-            [[-4, 4, 0], [4, 70, 0]],
-            [[-4, 13, 8], [3, 60, 3]],
-            [[6, 20, 7], [10, 46, 14]],
-            [[13, 21, 1], [19, 19, 0]],
+            [[38, 19, 0], [28, 19, 0]],
+            [[-2, 6, 0], [1, 21, 0]],
+            [[-4, 4, 0], [4, 68, 0]],
+            [[-4, 10, 15], [2, 59, 2]],
+            [[-3, 20, 12], [2, 56, 18]],
+            [[-1, 30, 1], [18, 19, 0]],
             [[19, 19, 0], [19, 19, 0]],
         ],
-        sizes: [[84, 9, 6, 2, 15, 5, -58, 7], [82, 9, 2, 1, 18, 8, -49, 7], [55, -15, 19, 7, 5, 10, -18, 4]],
+        sizes: [
+            [130, 2, 5, 2, 21, 5, -61, 6],
+            [108, 3, 2, 1, 22, 8, -62, 6],
+            [81, -18, 20, 7, 5, 10, -18, 4],
+        ],
     };
 
     /// Codes how far weights are from the defaults; `None` if what is read is beyond all bounds.
