@@ -1668,7 +1668,7 @@ class Symbols:
 
 TIPS, STEPS, JUMPS, RESIDUALS = range(4)
 NOTHING = 4
-TIP_SIZES = (10, 5, 8, 8, 4, 4)
+TIP_SIZES = (4, 10, 5, 8, 8, 4)
 FIRST_PREDICTIONS = (
     ((38, 19, 0), (28, 19, 0)),
     ((-2, 6, 0), (1, 21, 0)),
@@ -1702,10 +1702,10 @@ class TableBase:
             Group(head, 5, TIP_SIZES, 48),
             Group(head, 33, (1,), 1),
             Group(head, 128, (1,), 1),
-            Group(head, 128, (3, 40, 4, 7, 10, 3), 48),
+            Group(head, 128, (10, 3, 3, 40, 4, 7), 48),
         ]
         head.check_end()
-        self.looks_for_repeated = bool(groups[RESIDUALS].looks_at & {4, 5})
+        self.looks_for_repeated = bool(groups[RESIDUALS].looks_at & {0, 1})
         self.coder, self.num_vertices = Symbols(reader, groups), num_vertices
         self.mesh = mesh = Mesh()
         mesh.precision = precision
@@ -1780,9 +1780,9 @@ class TableBase:
         mesh = self.mesh
         s, e = self.before[gate], self.after[gate]
         pivot, end, x, y = self.start(gate), self.end(gate), self.start(s), self.end(e)
-        degrees = [min(self.faces[v] - 1, n - 1) for v, n in zip((pivot, end, x, y), TIP_SIZES)]
+        degrees = [min(self.faces[v] - 1, n - 1) for v, n in zip((pivot, end, x, y), TIP_SIZES[1:])]
         bounds = 2 * self.bound[pivot] + self.bound[end]
-        tip = self.coder.symbol(TIPS, (*degrees, self.last, bounds))
+        tip = self.coder.symbol(TIPS, (bounds, *degrees, self.last))
         if tip == NOTHING:
             self.border.add(gate)
             self.bound[pivot] = self.bound[end] = 1
@@ -1999,7 +1999,7 @@ class TableOutlook:
             level_ = index((log - Single(-1.6)) * 5, 40)
             fraction = index(abs(centre - Single(nearest)) * 8, 4)
             repeated = self.repeated(axis, centre, nearest, mirrored) if self.base.looks_for_repeated else (0, 0)
-            context = (kind, level_, fraction, self.class_, *repeated)
+            context = (*repeated, kind, level_, fraction, self.class_)
             residual = self.base.coder.signed(RESIDUALS, context)
             x = origin[axis] + nearest + (residual if mirrored else -residual)
             require(0 <= x < self.base.limit, "a base vertex lies outside the grid")

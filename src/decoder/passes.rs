@@ -44,8 +44,9 @@ impl PassDecoder {
 
     /// Bytes of memory that a pass may take, the buffer of the stream not counted.
     pub(super) fn memory_for(&self, pass: &PassInfo) -> u64 {
+        let tables = if self.profile == Profile::Fast { MEMORY_OF_MODELS } else { 0 };
         let base = match pass.row.action {
-            Action::Base { .. } => 160 * u64::from(pass.triangles) + MEMORY_OF_MODELS,
+            Action::Base { .. } => 160 * u64::from(pass.triangles) + tables,
             _ => 0,
         };
         bytes_of_models(self.profile.mixing())

@@ -26,7 +26,7 @@ pub(crate) const fn memory(groups: &[Group]) -> u64 {
             contexts *= attributes[k];
             k += 1;
         }
-        bytes += 3 * contexts as u64 + (4 * TOTAL as u64 + 512) * most_tables as u64;
+        bytes += contexts as u64 + (4 * TOTAL as u64 + 512) * most_tables as u64;
         i += 1;
     }
     bytes
@@ -46,8 +46,10 @@ pub(crate) struct Models {
 }
 
 struct Lookup {
-    /// Of each context the number of its table among all.
-    tables: Vec<u16>,
+    /// Of each context the number of its table.
+    leaves: Vec<u8>,
+    /// Where their slots begin.
+    first: usize,
     looks_at: Vec<bool>,
 }
 
@@ -56,11 +58,10 @@ impl Models {
     pub(crate) fn read<B: BitCoder>(coder: &mut B, groups: &[Group]) -> Option<Self> {
         let mut models = Self { groups: Vec::new(), slots: Vec::new() };
         for group in groups {
-            let first = models.slots.len() / TOTAL as usize;
+            let first = models.slots.len();
             let (leaves, tables) = code_group(coder, group, None)?;
             tables.iter().for_each(|table| append_slots(&mut models.slots, table));
-            let tables = leaves.of_context.into_iter().map(|leaf| first as u16 + u16::from(leaf)).collect();
-            models.groups.push(Lookup { tables, looks_at: leaves.looks_at });
+            models.groups.push(Lookup { leaves: leaves.of_context, first, looks_at: leaves.looks_at });
         }
         Some(models)
     }
@@ -73,8 +74,8 @@ impl Models {
     /// What is found below the low bits of a state.
     #[inline(always)]
     pub(super) fn slot(&self, group: usize, context: usize, state: u32) -> Slot {
-        let table = self.groups[group].tables[context];
-        self.slots[table as usize * TOTAL as usize + (state % TOTAL) as usize]
+        let Lookup { leaves, first, .. } = &self.groups[group];
+        self.slots[first + usize::from(leaves[context]) * TOTAL as usize + (state % TOTAL) as usize]
     }
 }
 

@@ -13,6 +13,7 @@ const PLACED: u8 = MOST as u8 + 1;
 
 /// What is known of a vertex: half a line of a cache.
 #[derive(Clone, Copy)]
+#[repr(align(32))]
 pub(super) struct Known {
     pub(super) position: [i32; 3],
     /// How far it is from the mean of its outlook.

@@ -38,14 +38,14 @@ pub(super) struct TipContext {
 }
 
 impl TipContext {
-    const SIZES: &[usize] = &[10, 5, 8, 8, 4, 4];
+    /// What is mostly the same comes first: contexts that are met are side by side then.
+    const SIZES: &[usize] = &[4, 10, 5, 8, 8, 4];
 
     pub(super) fn index(&self) -> usize {
         let Self { pivot, end, before, after, last, bounds } = *self;
-        let degree = |degree: usize, i: usize| degree.min(Self::SIZES[i] - 1);
-        let index = degree(pivot, 0) * 5 + degree(end, 1);
-        let index = (index * 8 + degree(before, 2)) * 8 + degree(after, 3);
-        (index * 4 + last) * 4 + bounds
+        let index = (bounds * 10 + pivot.min(9)) * 5 + end.min(4);
+        let index = (index * 8 + before.min(7)) * 8 + after.min(7);
+        index * 4 + last
     }
 }
 
@@ -69,14 +69,14 @@ pub(super) struct ResidualContext {
 }
 
 impl ResidualContext {
-    const SIZES: &[usize] = &[3, LEVELS, FRACTIONS, CLASSES, REPEATS, COUNTS];
+    const SIZES: &[usize] = &[REPEATS, COUNTS, 3, LEVELS, FRACTIONS, CLASSES];
     /// The attributes that take a search through the neighbours.
-    pub(super) const OF_REPEATED: [usize; 2] = [4, 5];
+    pub(super) const OF_REPEATED: [usize; 2] = [0, 1];
 
     #[inline(always)]
     pub(super) fn index(&self) -> usize {
         let Self { kind, level, fraction, class, repeated, count } = *self;
-        ((((kind * LEVELS + level) * FRACTIONS + fraction) * CLASSES + class) * REPEATS + repeated) * COUNTS
-            + count
+        let index = (repeated * COUNTS + count) * 3 + kind;
+        ((index * LEVELS + level) * FRACTIONS + fraction) * CLASSES + class
     }
 }
