@@ -11,7 +11,8 @@ const DEPTHS: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Node {
     Leaf,
-    /// Contexts whose attribute is below the threshold are on the first side.
+    /// Contexts whose attribute is below the threshold are on the first side. Decoders make none.
+    #[cfg_attr(not(feature = "encoder"), allow(dead_code))]
     Split {
         attribute: usize,
         threshold: usize,
