@@ -9,11 +9,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("usage: convert FROM TO".into());
     };
     let file = io::read(&from)?;
-    let report = io::write_with_attributes(&to, &file.mesh, &file.attributes)?;
+    let losses = io::write_with_attributes(&to, &file.mesh, &file.attributes)?;
     let names = |names: &[String]| if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
     let (vertices, triangles) = (file.mesh.num_vertices(), file.mesh.num_triangles());
     println!("{to}: {vertices} vertices, {triangles} triangles");
-    println!("not read: {}; not written: {}", names(&file.report.ignored), names(&report.ignored));
-    println!("zeros where there was no value: {}", names(&report.zeroed));
+    println!("not read: {}", names(&file.report.ignored));
+    losses.iter().for_each(|loss| println!("writing: {loss}"));
     Ok(())
 }

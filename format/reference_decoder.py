@@ -2078,7 +2078,7 @@ class Whole:
         cell, first = [0, 0, 0], 0
         for _ in range(vertices):
             cell = [cell[a] + deltas.signed(coder, a) for a in range(3)]
-            require(all(0 <= c < 1 << self.grid[0] for c in cell), "an isolated vertex off the grid")
+            require(all(0 <= c < 1 << self.grid.full for c in cell), "an isolated vertex off the grid")
             self.cell.append(cell)
         for _ in range(faces):
             first += links.signed(coder, 0)
@@ -2092,12 +2092,11 @@ class Whole:
         require(len(payload) >= 4 and payload[0] < 2, "the kinds of exact numbers")
         axes = [ExactAxis(payload[0] == 1, code) for code in payload[1:4]]
         coder = RangeDecoder(payload[4:])
-        precision, _, side = self.grid
-        half = side / ((1 << precision) - 1) * 0.5
+        half = [s * 0.5 for s in self.grid.step]
         self.position = []
         for cell in self.cell:
-            middle = position(self.grid, cell, precision)
-            self.position.append([axes[a].decode(coder, cell[a], middle[a] - half, middle[a] + half) for a in range(3)])
+            middle = position(self.grid, cell, self.grid.full)
+            self.position.append([axes[a].decode(coder, cell[a], middle[a] - half[a], middle[a] + half[a]) for a in range(3)])
             coder.check_end()
 
     def ordered(self, payload):
@@ -2533,6 +2532,14 @@ def read_materials(payload):
     images = [reader.take(reader.varint()) for _ in range(reader.varint())]
     require(reader.is_empty(), "the materials")
     return document, images
+
+
+def read_metadata(payload):
+    """Texts by their keys."""
+    reader = Reader(payload)
+    pairs = [(string(reader), string(reader)) for _ in range(reader.varint())]
+    require(reader.is_empty() and len(dict(pairs)) == len(pairs), "the metadata")
+    return dict(pairs)
 
 
 # 7.11 Attributes
@@ -3079,11 +3086,46 @@ def chunks(stream, rows):
 def read_grid(payload):
     reader = Reader(payload)
     flags, precision = reader.u8(), reader.u8()
-    require(flags < 16 and 1 <= precision <= 30, "the header")
-    *origin, side = struct.unpack("<4d", reader.take(32)) if flags & 1 else struct.unpack("<4f", reader.take(16))
-    sound = side >= 0 and all(math.isfinite(x) and math.isfinite(x + side) for x in origin)
-    require(sound and math.isfinite(side) and reader.is_empty(), "the header")
-    return precision, origin, side
+    require(flags < 64 and flags & 48 != 32 and 1 <= precision <= 30, "the header")
+    numbers = lambda n: list(struct.unpack("<%dd" % n, reader.take(8 * n)) if flags & 1 else struct.unpack("<%df" % n, reader.take(4 * n)))
+    origin = numbers(3)
+    require(all(map(math.isfinite, origin)), "the header")
+    grid = Lattice(precision, origin, numbers(3), read_offset(reader, flags)) if flags & 16 else Cube(precision, origin, *numbers(1))
+    require(reader.is_empty(), "the header")
+    return grid
+
+
+def read_offset(reader, flags):
+    if not flags & 32:
+        return [0, 0, 0]
+    offset = list(struct.unpack("<3q", reader.take(24)))
+    require(any(offset) and all(abs(k) <= 1 << 51 for k in offset), "the header")
+    return offset
+
+
+class Cube:
+    """Section 4.1: a grid with one side."""
+
+    def __init__(self, full, origin, side):
+        require(math.isfinite(side) and side >= 0 and all(math.isfinite(x + side) for x in origin), "the header")
+        self.full, self.origin, self.side = full, origin, side
+        self.step = [side / ((1 << full) - 1)] * 3
+
+    def place(self, fine):
+        return [o + f / ((1 << self.full) - 1) * self.side for o, f in zip(self.origin, fine)]
+
+
+class Lattice:
+    """Section 4.1: a grid on a lattice."""
+
+    def __init__(self, full, origin, step, offset):
+        require(all(math.isfinite(s) and s > 0 for s in step), "the header")
+        self.full, self.origin, self.step, self.offset = full, origin, step, offset
+        ends = self.place([0] * 3) + self.place([(1 << full) - 1] * 3)
+        require(all(map(math.isfinite, ends)), "the header")
+
+    def place(self, fine):
+        return [o + float(k + f) * s for o, k, f, s in zip(self.origin, self.offset, fine, self.step)]
 
 
 class Bits:
@@ -3121,10 +3163,8 @@ class Bits:
 
 
 def position(grid, cell, precision):
-    full, origin, side = grid
-    hidden = full - precision
-    fine = [c * (1 << hidden) + ((1 << hidden) - 1) * 0.5 for c in cell]
-    return [o + f / ((1 << full) - 1) * side for o, f in zip(origin, fine)]
+    hidden = grid.full - precision
+    return grid.place([c * (1 << hidden) + ((1 << hidden) - 1) * 0.5 for c in cell])
 
 
 def read_trailing_index(payload):
@@ -3192,14 +3232,13 @@ def shown(grid, mesh, weights):
         around[a] += bend[b] + bend[c]
         around[b] += bend[c] + bend[a]
         around[c] += bend[a] + bend[b]
-    full, _, side = grid
-    step = side / ((1 << full) - 1) * (1 << (full - mesh.precision))
+    step = [s * (1 << (grid.full - mesh.precision)) for s in grid.step]
     places = []
     for v in range(size):
         place = position(grid, mesh.cell[v], mesh.precision)
         if e[v] % (1 << 32) == 0 and d[v]:
             h = (weights[0] * bend[v] + weights[1] * (around[v] / (2 * d[v]))) / 64
-            place = [x + (-h * y) * step for x, y in zip(place, n[v])]
+            place = [x + (-h * y) * s for x, y, s in zip(place, n[v], step)]
         places.append(place)
     return places
 
@@ -3293,23 +3332,23 @@ def decode(stream):
         elif kind == "c" and rows is None:
             require(weights is None, "a chunk out of order")
             weights = payload
-        elif kind in "dnm" and rows is None:
+        elif kind in "dnmk" and rows is None:
             require(kind not in known, "a chunk out of order")
             known.add(kind)
             if kind == "d":
                 declared = read_attributes(payload)
                 values = [Values(one) for one in declared[0]]
             else:
-                {"n": read_scene, "m": read_materials}[kind](payload)
+                {"n": read_scene, "m": read_materials, "k": read_metadata}[kind](payload)
         elif kind == "H":
             require(grid is None, "a chunk out of order")
             grid = read_grid(payload)
-            profile = payload[0] >> 2
+            profile = payload[0] >> 2 & 3
             require(profile < 3, "unsupported profile")
             is_fast, Mixed.has_specialists = profile == 1, profile == 2
         elif kind == "L":
             require(grid and rows is None, "a chunk out of order")
-            rows, precision = read_table(payload, grid[0])
+            rows, precision = read_table(payload, grid.full)
             ahead.extend(rows)
             weights = read_compensation(weights, len(rows) - 1) + [(0, 0)] if weights is not None else None
             require(all(i < len(rows) for i in (listed or ({}, []))[0]), "stitching after a pass that does not exist")

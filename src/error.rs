@@ -70,6 +70,18 @@ pub enum EncodeError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// The grid is too fine for the extent of the mesh, or for its distance from the grid's origin.
+    #[error(
+        "a step of {step} along {axis} is too small for this mesh: 30 bits allow {smallest:.2e} at least"
+    )]
+    StepTooSmall {
+        /// `x`, `y` or `z`.
+        axis: char,
+        /// What was asked for, model units.
+        step: f64,
+        /// The smallest step that does, model units.
+        smallest: f64,
+    },
     /// The mesh is too large for the format.
     #[error("the mesh has {0} vertices or faces, more than the format can hold")]
     TooLarge(usize),

@@ -105,13 +105,17 @@ mod passes;
 #[cfg(feature = "render")]
 pub mod render;
 
+pub use bitstream::grid::Lattice;
 pub use bitstream::profile::Profile;
 pub use decoder::{
     AttributeInfo, DecodeOptions, Decoder, LevelMesh, PassInfo, PassKind, PositionUpdater, Step, StreamInfo,
     TrailingInfo, TrailingKind, Update, decode,
 };
 #[cfg(feature = "encoder")]
-pub use encoder::{EncodeOptions, Encoded, Progress, encode, encode_with_attributes, encode_with_progress};
+pub use encoder::{
+    EncodeOptions, Encoded, GridChoice, GridError, Progress, Remedy, encode, encode_with_attributes,
+    encode_with_progress,
+};
 pub use error::DecodeError;
 #[cfg(feature = "encoder")]
 pub use error::EncodeError;

@@ -64,21 +64,91 @@ fn thin_bar() -> TriMesh {
 fn a_grid_that_is_too_coarse_is_said_with_the_bits_that_do() {
     let workshop = Workshop::new();
     io::write(workshop.path("bar.obj"), &thin_bar()).unwrap();
-    let (_, stderr) = workshop.ok("encode bar.obj -q 8 -o coarse.lwc");
-    assert!(stderr.contains("160 of 160 triangles collapse or turn over on the grid"), "{stderr}");
-    assert!(stderr.contains("8 bits: steps of 3.92e-3, vertices off by at most"), "{stderr}");
+    let (_, stderr) = workshop.ok("encode bar.obj -q 8 --cubic-grid -o coarse.lwc");
+    assert!(stderr.contains("160 of 160 triangles collapsed: the grid is too coarse, `-q "), "{stderr}");
+    assert!(stderr.contains("8 bits: steps of 3.92e-3\n"), "{stderr}");
     let bits = stderr.split("`-q ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();
-    let (_, stderr) = workshop.ok(&format!("encode bar.obj -q {bits} -o fine.lwc"));
+    let (_, stderr) = workshop.ok(&format!("encode bar.obj -q {bits} --cubic-grid -o fine.lwc"));
+    assert!(!stderr.contains("warning"), "{stderr}");
+    let (_, stderr) = workshop.ok("encode bar.obj -q 8 -o stretched.lwc");
+    assert!(stderr.contains("note") && stderr.contains("each axis has its own step"), "{stderr}");
     assert!(!stderr.contains("warning"), "{stderr}");
     let (_, stderr) = workshop.ok("encode bar.obj -q 8 --lossless -o exact.lwc");
     assert!(!stderr.contains("warning") && !stderr.contains("steps of"), "{stderr}");
+    assert!(!stderr.contains("positions rounded"), "{stderr}");
 }
 
 #[test]
-fn a_dash_is_no_file() {
+fn meshes_come_from_standard_input_if_their_format_is_said() {
     let workshop = Workshop::new();
-    let error = workshop.fails("encode -", 3);
-    assert!(error.contains("a mesh is not read from standard input"), "{error}");
+    let error = workshop.fails("encode -", 2);
+    assert!(error_line(&error).starts_with("lwc: standard input: say what it is with --format"), "{error}");
+    let expected = workshop.ball_stream();
+    let mesh = fs::read(workshop.path("ball.ply")).unwrap();
+    let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    packer.write_all(&mesh).unwrap();
+    for bytes in [mesh.clone(), packer.finish().unwrap(), zstd::encode_all(&mesh[..], 1).unwrap()] {
+        let output = workshop.run_with_input("encode - --format ply", bytes.clone());
+        assert_eq!((output.stdout, text(output.stderr)), (expected.clone(), String::new()));
+        let line = "compare - ball.ply --format ply";
+        let (report, _) = succeeded(line, workshop.run_with_input(line, bytes));
+        assert!(report.contains("the surfaces are identical"), "{report}");
+    }
+    for line in
+        ["describe - --format ply -o d.csv", "filter - --format ply", "encode - --format ply -o a.lwc"]
+    {
+        succeeded(line, workshop.run_with_input(line, mesh.clone()));
+    }
+    assert_eq!(fs::read(workshop.path("a.lwc")).unwrap(), expected);
+    let error = failed("encode", workshop.run_with_input("encode - --format obj", mesh), 3);
+    assert!(error_line(&error).starts_with("lwc: standard input: line "), "{error}");
+    workshop.fails("encode - ball.ply - --format ply -o x.lwc", 2);
+}
+
+#[test]
+fn several_files_become_one_scene() {
+    let workshop = Workshop::new();
+    workshop.put("small.one.obj", &sphere(1));
+    let error = workshop.fails("encode ball.ply small.one.obj", 2);
+    assert!(error_line(&error).contains("name it with -o"), "{error}");
+    let report =
+        workshop.json("encode ball.ply small.one.obj ball.ply -o all.lwc --lossless --json --verify");
+    assert_eq!(report["inputs"], serde_json::json!(["ball.ply", "small.one.obj", "ball.ply"]));
+    workshop.ok("decode all.lwc -o all.glb");
+    let scene = io::read_scene(workshop.path("all.glb")).unwrap();
+    let names: Vec<&str> = scene.instances.iter().map(|instance| instance.name.as_str()).collect();
+    assert_eq!(names, ["ball", "small.one", "ball"]);
+    let sizes: Vec<usize> = scene.meshes.iter().map(|file| file.mesh.num_triangles()).collect();
+    assert_eq!(sizes, [1280, 80, 1280]);
+    // What is a scene already keeps its names and places.
+    workshop.ok("encode all.glb small.one.obj -o more.lwc");
+    workshop.ok("decode more.lwc -o more.glb");
+    assert_eq!(io::read_scene(workshop.path("more.glb")).unwrap().instances.len(), 4);
+    workshop.ok("encode ball.ply small.one.obj -o one.lwc --merge");
+    workshop.ok("decode one.lwc -o one.glb");
+    let merged = io::read_scene(workshop.path("one.glb")).unwrap();
+    assert_eq!((merged.meshes.len(), merged.meshes[0].mesh.num_triangles()), (1, 1360));
+    workshop.fails("encode ball.ply missing.obj -o x.lwc", 3);
+    workshop.fails("encode small.one.obj ball.ply -o ball.ply", 2);
+}
+
+#[test]
+fn textures_are_counted_and_may_be_left_out() {
+    let workshop = Workshop::new();
+    let obj = "mtllib a.mtl\nusemtl wood\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+    fs::write(workshop.path("a.obj"), obj).unwrap();
+    fs::write(workshop.path("a.mtl"), "newmtl wood\nKd 0.5 0.25 0.125\nmap_Kd wood.png\n").unwrap();
+    fs::write(workshop.path("wood.png"), [&b"\x89PNG\r\n\x1a\n"[..], &[7; 4000]].concat()).unwrap();
+    let (_, stderr) = workshop.ok("encode a.obj");
+    assert!(stderr.contains(" bytes, 4008 of them textures, "), "{stderr}");
+    assert_eq!(workshop.json("encode a.obj --json")["texture_bytes"], 4008);
+    let report = workshop.json("encode a.obj --json --no-textures");
+    assert_eq!(report["texture_bytes"], 0);
+    assert_eq!(left_out(&report), ["textures"]);
+    assert!(report["bytes"].as_u64().unwrap() < 1000);
+    fs::remove_file(workshop.path("wood.png")).unwrap();
+    let (_, stderr) = workshop.ok("encode a.obj");
+    assert!(stderr.contains("left out: image `wood.png`: "), "{stderr}");
 }
 
 /// The names of all commands.
@@ -612,20 +682,64 @@ fn the_whole_stream_is_the_mesh_on_the_grid() {
     workshop.ball_stream();
     let (stdout, stderr) = workshop.ok("decode ball.lwc");
     assert!(stderr.starts_with("ball.decoded.obj: 642 vertices, 1280 triangles, level "), "{stderr}");
-    assert_eq!((stdout, stderr.lines().count()), (String::new(), 1));
+    assert!(stderr.lines().nth(1).is_some_and(|line| line.starts_with("lost: ")), "{stderr}");
+    assert_eq!((stdout, stderr.lines().count()), (String::new(), 2));
     let decoded = workshop.mesh("ball.decoded.obj");
     assert_eq!((decoded.num_vertices(), decoded.num_triangles()), (642, 1280));
 
     let info = workshop.json("info ball.lwc --json");
-    let step = info["step"].as_f64().unwrap();
-    for p in decoded.positions() {
-        for (axis, x) in p.iter().enumerate() {
-            let cell = (x - info["origin"][axis].as_f64().unwrap()) / step;
-            assert!((cell - cell.round()).abs() < 1e-6 && (-0.5..4095.5).contains(&cell), "{cell}");
+    let step = info["step"][0].as_f64().unwrap();
+    workshop.ok("decode ball.lwc -o double.obj --position-type double");
+    for (mesh, most) in [(&decoded, 0.125), (&workshop.mesh("double.obj"), 1e-6)] {
+        for p in mesh.positions() {
+            for (axis, x) in p.iter().enumerate() {
+                let cell = (x - info["origin"][axis].as_f64().unwrap()) / step;
+                assert!((cell - cell.round()).abs() < most && (-0.5..4095.5).contains(&cell), "{cell}");
+            }
         }
     }
     let distance = workshop.json("compare ball.ply ball.lwc --json");
     assert!(distance["max"].as_f64().unwrap() <= step);
+}
+
+/// The options of mesh files, from the command line to the file.
+#[test]
+fn a_mesh_is_written_as_its_readers_want_it() {
+    let workshop = Workshop::new();
+    let obj = "v 0.1 0 0 0.5 0.25 1\nv 1.1 0 0 0.5 0.25 1\nv 1.1 1 0 0.5 0.25 1\nv 0.1 1 0 0.5 0.25 1\n\
+               vt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0.1 0.2\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/4/1 3/3/1 4/2/1\n";
+    fs::write(workshop.path("seam.obj"), obj).unwrap();
+    workshop.ok("encode seam.obj");
+    let header = |line: &str| {
+        let (_, stderr) = workshop.ok(&format!("decode seam.lwc -o out.ply {line}"));
+        let bytes = fs::read(workshop.path("out.ply")).unwrap();
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        (text.split("end_header").next().unwrap().to_owned(), stderr)
+    };
+    let (usual, stderr) = header("");
+    for line in ["property float x", "property uchar red", "property float nx", "list uchar float texcoord"] {
+        assert!(usual.contains(line), "{usual}");
+    }
+    assert!(!stderr.contains("warning"), "rounding is no news: {stderr}");
+    assert!(stderr.contains("positions rounded to float32, by at most "), "{stderr}");
+    assert!(stderr.contains("vt: 5 of 10 values rounded, by at most "), "{stderr}");
+    assert!(header("--position-type double").0.contains("property double x"));
+    assert!(header("--color-type ushort").0.contains("property uint16 red"));
+    assert!(header("--color-type keep").0.contains("property double red"));
+    let (split, _) = header("--split-seams");
+    assert!(split.contains("vertex 5\n") && split.contains("property float s\n"), "{split}");
+
+    let colour = |line: &str| {
+        workshop.ok(&format!("decode seam.lwc -o out.glb {line}"));
+        let file = io::read(workshop.path("out.glb")).unwrap();
+        let colour = file.attributes.list.iter().find(|attribute| attribute.name == "COLOR_0").unwrap();
+        (colour.number(0, 0).unwrap(), file.mesh.bounding_box().unwrap().1)
+    };
+    let (linear, corner) = colour("");
+    assert!((linear - 0.215).abs() < 2e-3 && corner[1] > 0.99, "{linear}");
+    let (kept, corner) = colour("--color-space keep --up z");
+    assert!((kept - 0.5).abs() < 3e-3 && corner[1] < 0.01, "{kept}");
+    workshop.fails("decode seam.lwc -o out.glb --up x", 2);
 }
 
 #[test]

@@ -269,11 +269,137 @@ fn ply_elements_may_go_over_several_lines() {
 }
 
 #[test]
-fn ply_textures_that_a_comment_names_are_reported() {
-    let text = ply_text("", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-    let lines = "ascii 1.0\ncomment TextureFile skin one.png\ncomment TextureFile\ncomment textures\n";
+fn ply_textures_that_a_comment_names_are_kept() {
+    let text = ply_text("", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1\n3 0 2 1 0\n3 0 2 1 -1\n3 0 2 1 2\n");
+    let text = text
+        .replace("element face 1", "element face 4")
+        .replace("indices\n", "indices\nproperty int texnumber\n");
+    let lines = "ascii 1.0\ncomment TextureFile skin one.png\ncomment TextureFile  b.png\ncomment textures\n";
     let file = ply(text.replace("ascii 1.0\n", lines)).unwrap();
-    assert_eq!(file.report.ignored, ["TextureFile `skin one.png`", "TextureFile ``"]);
+    let textures = named(&file, "TextureFile");
+    assert_eq!(textures.values.names().unwrap(), ["skin one.png", "b.png"]);
+    assert_eq!(textures.indices.as_ref().unwrap()[..], [1, 0, NO_ENTRY, NO_ENTRY]);
+    assert_eq!(named(&file, "texnumber").values, Values::I32(vec![1, 0, -1, 2]));
+    let mut written = Vec::new();
+    let report =
+        io::write_with_attributes_to(&mut written, &file.mesh, &file.attributes, Format::Ply).unwrap();
+    assert!(report.is_empty(), "{report}");
+    assert_eq!(ply(&written).unwrap().attributes.list, file.attributes.list);
+    // Without numbers all have the first.
+    let text = ply_text("", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").replace("ascii 1.0\n", lines);
+    assert_eq!(entries(&ply(text).unwrap(), "TextureFile"), [0; 3]);
+}
+
+#[test]
+fn ply_comments_carry_a_coordinate_reference_system() {
+    let text = ply_text("", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    let lines =
+        "ascii 1.0\ncomment crs.wkt  GEOGCS[\"a b\"]\ncomment crs.wkt twice\ncomment crs.x\ncomment crsx y\n";
+    let file = ply(text.replace("ascii 1.0\n", lines)).unwrap();
+    assert_eq!(file.attributes.metadata[..], [("crs.wkt".to_owned(), "GEOGCS[\"a b\"]".to_owned())]);
+    let mut written = Vec::new();
+    io::write_with_attributes_to(&mut written, &file.mesh, &file.attributes, Format::Ply).unwrap();
+    assert_eq!(ply(&written).unwrap().attributes.metadata, file.attributes.metadata);
+    let report = io::write_with_attributes_to(Vec::new(), &file.mesh, &file.attributes, Format::Obj).unwrap();
+    let subjects: Vec<&str> = report.iter().map(|loss| loss.subject.as_str()).collect();
+    assert_eq!(subjects, ["crs.wkt"]);
+}
+
+// --- Polygons ------------------------------------------------------------------------------------------
+
+/// Twice the areas of triangles seen along z, and their sum.
+fn doubled_areas(mesh: &TriMesh) -> Vec<f64> {
+    let area = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| mesh.positions()[v as usize]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    mesh.triangles().iter().map(area).collect()
+}
+
+/// An L with a corner in the middle of an edge, once in each of its rotations, and a square.
+#[test]
+fn concave_polygons_are_cut_without_leaving_them() {
+    let corners = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2], [0, 1]];
+    let vertices: String = corners.iter().map(|[x, y]| format!("v {x} {y} 0\n")).collect();
+    let texture: String = corners.iter().map(|[x, y]| format!("vt {x} {y}\n")).collect();
+    for start in 0..7 {
+        let face: String = (0..7).map(|k| (k + start) % 7 + 1).map(|k| format!(" {k}/{k}")).collect();
+        let text = format!("{vertices}{texture}usemtl a\nf{face}\nusemtl b\nf 1/1 2/2 3/3 4/4\n");
+        let file = obj(&text).unwrap();
+        let areas = doubled_areas(&file.mesh);
+        assert_eq!((areas.len(), areas[..5].iter().sum::<f64>()), (7, 6.0), "{start}");
+        // Two corners see all others, with three of them on a line: the fan has a triangle without area.
+        assert!(
+            areas.iter().all(|&area| area > 0.0 || (area == 0.0 && matches!(start, 0 | 6))),
+            "{start}: {areas:?}"
+        );
+        assert_eq!(file.report.polygons_triangulated, 2);
+        assert_eq!(file.report.polygons_overlapping, 0);
+        // Corners keep what they have.
+        let corners = file.mesh.triangles().as_flattened();
+        assert_eq!(entries(&file, "vt"), corners, "{start}");
+        assert_eq!(named(&file, "usemtl").indices.as_ref().unwrap()[..], [0, 0, 0, 0, 0, 1, 1]);
+        // Faces may come before their vertices.
+        let turned = format!("usemtl a\nf{face}\nusemtl b\nf 1/1 2/2 3/3 4/4\n{vertices}{texture}");
+        assert_eq!(obj(turned).unwrap().mesh, file.mesh);
+    }
+}
+
+#[test]
+fn ply_polygons_are_cut_as_those_of_obj() {
+    let head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n\
+        property uchar tag\nend_header\n2 0 0\n0 2 0\n0 0 0\n0.5 0.5 0\n";
+    let file = ply(format!("{head}4 0 3 1 2 8 0 0 3 3 1 1 2 2 7\n4 3 1 2 0 8 3 3 1 1 2 2 0 0 9\n")).unwrap();
+    // The first is seen as a whole from a corner next to the notch only; the second from the notch.
+    assert!(doubled_areas(&file.mesh).iter().all(|&area| area > 0.0));
+    assert_eq!(file.mesh.triangles()[2..], [[3, 1, 2], [3, 2, 0]]);
+    let texcoord = named(&file, "texcoord");
+    for (corner, &vertex) in file.mesh.triangles().as_flattened().iter().enumerate() {
+        assert_eq!(texcoord.number(texcoord.entry(corner).unwrap(), 0), Some(f64::from(vertex)));
+    }
+    let tag = named(&file, "tag");
+    assert_eq!(
+        [0, 1, 2, 3].map(|t| tag.number(tag.entry(t).unwrap(), 0)),
+        [7, 7, 9, 9].map(|n| Some(f64::from(n)))
+    );
+}
+
+#[test]
+fn convex_and_hopeless_polygons_are_fans() {
+    let fan = |vertices: &str, n: u32| {
+        let face: String = (1..=n).map(|k| format!(" {k}")).collect();
+        let file = obj(format!("{vertices}f{face}\n")).unwrap();
+        let fan: Vec<[u32; 3]> = (1..n - 1).map(|k| [0, k, k + 1]).collect();
+        (file.mesh.triangles() == fan, file.report.polygons_overlapping)
+    };
+    assert_eq!(fan("v 0 0 0\nv 1 0 0\nv 1 1 0.3\nv 0 1 0\n", 4), (true, 0));
+    assert_eq!(fan("v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 3 0\n", 4), (true, 1));
+    assert_eq!(fan("v 0 0 0\nv 1 1 1\nv 2 2 2\nv 3 3 3\nv 4 4 4\n", 5), (true, 0));
+    assert_eq!(fan(&"v 1 2 3\n".repeat(6), 6), (true, 0));
+    // One index again and again.
+    let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf {}\n", "1 2 3 ".repeat(3000));
+    assert_eq!(obj(text).unwrap().mesh.num_triangles(), 8998);
+    // A star of which no corner sees much, and more corners than are worth the work.
+    let star = |n: u32| -> String {
+        let corner = |k: u32| {
+            let (angle, radius) =
+                (f64::from(k) * std::f64::consts::TAU / f64::from(n), 1.0 + f64::from(k % 2));
+            format!("v {} {} 0\n", radius * angle.cos(), radius * angle.sin())
+        };
+        (0..n).map(corner).collect()
+    };
+    assert_eq!(fan(&star(1000), 1000), (false, 0));
+    assert_eq!(fan(&star(60_000), 60_000), (true, 1));
+}
+
+#[test]
+fn obj_vertices_of_seven_numbers_have_weight_and_colour() {
+    let file = obj("v 0 0 0 1 0.5 0.25 0\nv 1 0 0 1 1 1 1\nv 0 1 0 1 0 0 0\nf 1 2 3\n").unwrap();
+    assert_eq!(named(&file, "v.rgb").values, Values::F64(vec![0.5, 0.25, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]));
+    assert!(file.report.ignored.is_empty());
+    let file = obj("v 0 0 0 2 0.5 0.25 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    assert_eq!(file.report.ignored, ["weights of vertices"]);
 }
 
 #[test]

@@ -47,6 +47,21 @@ fn colours_of_8_bits_are_the_same_numbers_in_decimals() {
     fuzzing::read_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\n#MRGB ff440099ff123456ff808080\nf 1 2 3\n", Format::Obj);
 }
 
+/// What PLY has in another type, under another name or not at all after writing is said, or the same numbers.
+#[test]
+fn what_a_writer_changes_is_said() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty double z\n\
+                  property double red\nproperty double green\nproperty double blue\nproperty double nx\n\
+                  property double ny\nproperty double nz\nproperty float q\nproperty int q\nproperty ushort r\n\
+                  property ushort g\nproperty ushort b\nelement face 1\nproperty list uchar int vertex_indices\n\
+                  property list uchar double texcoord\nproperty int vertex_index\nend_header\n";
+    let vertex = "0.1 2 0.3 0.2 0.4 0.1234 0 0 0.7 7 7 257 300 65535\n";
+    let vertices = [vertex, &vertex.replace("0.1 2", "1 3"), &vertex.replace("0.3", "5")];
+    let text = format!("{header}{}3 0 1 2 6 0.1 0.2 nan 0.4 1e300 0.6 9\n", vertices.concat());
+    assert!(lwc::io::read_bytes(text.as_bytes(), Format::Ply).is_ok());
+    fuzzing::read_mesh(text.as_bytes(), Format::Ply);
+}
+
 /// A few inputs of the fuzz targets that reach attributes, made up without a fuzzer.
 #[test]
 fn attributes_survive_random_meshes_and_damage() {
@@ -62,8 +77,16 @@ fn attributes_survive_random_meshes_and_damage() {
     for size in (20..900).step_by(9) {
         fuzzing::round_trip(&random(size));
     }
+    // The number that asks for steps and lattices.
+    for (size, grid) in (20..900).step_by(9).zip((9..15).cycle()) {
+        let mut input = random(size);
+        input[13] = grid + 45 * (input[13] % 5);
+        fuzzing::round_trip(&input);
+    }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("format/golden");
-    for name in ["colours", "texture-seams", "flat-normals", "materials"] {
+    for name in
+        ["colours", "texture-seams", "flat-normals", "materials", "lattice-exact", "lattice-with-offset"]
+    {
         let stream = std::fs::read(folder.join(name).with_extension("lwc")).unwrap_or_default();
         assert!(!stream.is_empty(), "{name}");
         for _ in 0..400 {

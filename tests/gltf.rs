@@ -6,10 +6,16 @@ use base64::Engine;
 use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, ReadError},
+    losses::{LossKind, Losses},
     mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values},
 };
 use serde_json::{Value, json};
 use std::fs;
+
+/// What is lost in this way.
+fn lost(losses: &Losses, kind: LossKind) -> Vec<&str> {
+    losses.iter().filter(|loss| loss.kind == kind).map(|loss| loss.subject.as_str()).collect()
+}
 
 /// A document while it is made: each array is a view of one buffer.
 #[derive(Default)]
@@ -166,8 +172,8 @@ fn seams_are_joined_and_what_has_none_is_of_vertices() {
 
     for format in [Format::Glb, Format::Gltf] {
         let mut bytes = Vec::new();
-        let report = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, format).unwrap();
-        assert_eq!(report, io::WriteReport::default());
+        let losses = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, format).unwrap();
+        assert_eq!(losses.to_string(), "1 vertex repeated");
         let again = io::read_bytes(&bytes, format).unwrap();
         assert_eq!(corners(&again.mesh), corners(&file.mesh));
         for name in ["NORMAL", "TEXCOORD_0", "COLOR_0"] {
@@ -203,8 +209,10 @@ fn primitives_share_vertices_and_have_materials() {
     assert!(file.report.ignored.is_empty());
 
     let mut bytes = Vec::new();
-    let report = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Glb).unwrap();
-    assert_eq!((report.ignored, report.zeroed), (vec![], vec!["_ID".to_owned()]));
+    let losses = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Glb).unwrap();
+    let filled = lost(&losses, LossKind::ValuesFilled);
+    assert_eq!((lost(&losses, LossKind::Dropped).len(), filled), (0, vec!["_ID (0)"]));
+    assert_eq!(lost(&losses, LossKind::Reordered), ["triangles by material"]);
     let again = io::read_bytes(&bytes, Format::Glb).unwrap();
     // One primitive for each material: the triangles without one come first.
     assert_eq!(named(&again, "material").indices, Some(vec![NO_ENTRY, 0, 0, 1]));
@@ -319,7 +327,7 @@ fn scenes_are_written_in_their_places() {
     let scene = io::read_scene(&path).unwrap();
     for ending in ["glb", "gltf"] {
         let copy = folder.path().join("copy").with_extension(ending);
-        assert_eq!(io::write_scene(&copy, &scene).unwrap(), io::WriteReport::default());
+        assert_eq!(io::write_scene(&copy, &scene).unwrap(), Losses::default());
         let again = io::read_scene(&copy).unwrap();
         assert_eq!(again.meshes.len(), 2);
         for (a, b) in again.meshes.iter().zip(&scene.meshes) {
@@ -411,7 +419,8 @@ fn materials_and_their_images_are_carried() {
         "extensionsUsed": ["KHR_materials_unlit", "KHR_lights_punctual"],
     }));
     let file = read(&document).unwrap();
-    assert!(file.report.ignored.is_empty(), "{:?}", file.report);
+    let missing = "image `wood.jpg` is another file, and there is no folder to look for it";
+    assert_eq!(file.report.ignored, [missing]);
     assert_eq!(named(&file, "material").values.names().unwrap(), ["paint#2", "paint"]);
     let carried = file.attributes.gltf_materials.as_ref().unwrap();
     assert_eq!(carried.images, [[1.5f32.to_le_bytes(), 2.5f32.to_le_bytes()].concat()]);
@@ -432,8 +441,171 @@ fn materials_and_their_images_are_carried() {
     assert_eq!(again.attributes, file.attributes);
 
     let mut ply = Vec::new();
-    let report = io::write_with_attributes_to(&mut ply, &file.mesh, &file.attributes, Format::Ply).unwrap();
-    assert!(report.ignored.contains(&"materials except their names".to_owned()));
+    let losses = io::write_with_attributes_to(&mut ply, &file.mesh, &file.attributes, Format::Ply).unwrap();
+    assert!(lost(&losses, LossKind::Dropped).contains(&"materials except their names"));
+}
+
+#[test]
+fn images_beside_a_document_are_taken_into_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let rest = json!({
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": position }, "material": 0 }] }],
+        "materials": [{ "name": "a", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
+        "textures": [{ "source": 0 }, { "source": 1 }, { "source": 2 }, { "source": 3 }],
+        "images": [{ "uri": "sub/a%20b.png" }, { "uri": "./c.jpg", "name": "c" }, { "uri": "sub/a%20b.png" }, { "uri": "../x.png" }],
+    });
+    let png = b"\x89PNG\r\n\x1a\nrest".to_vec();
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    fs::write(folder.path().join("sub/a b.png"), &png).unwrap();
+    fs::write(folder.path().join("c.jpg"), b"GIF89a").unwrap();
+    let path = folder.path().join("model.gltf");
+    fs::write(&path, model.document(rest).to_string()).unwrap();
+    let file = io::read(&path).unwrap();
+    let carried = file.attributes.gltf_materials.unwrap();
+    assert_eq!(carried.images, [png]);
+    let json: Value = serde_json::from_str(&carried.json).unwrap();
+    let inside = json!({ "bufferView": 0, "mimeType": "image/png", "name": "sub/a b.png" });
+    assert_eq!(
+        json["images"],
+        json!([inside, { "uri": "./c.jpg", "name": "c" }, inside, { "uri": "../x.png" }])
+    );
+    let expected = [
+        "image `./c.jpg` is neither PNG nor JPEG",
+        "image `../x.png` is not a file in the folder of the model",
+    ];
+    assert_eq!(file.report.ignored, expected);
+
+    let file = io::ReadOptions::default().without_textures().read(&path).unwrap();
+    let carried = file.attributes.gltf_materials.unwrap();
+    let json: Value = serde_json::from_str(&carried.json).unwrap();
+    assert_eq!(json["materials"], json!([{ "name": "a", "pbrMetallicRoughness": {} }]));
+    assert!(carried.images.is_empty() && json.get("images").is_none() && json.get("textures").is_none());
+    assert_eq!(file.report.ignored, ["textures"]);
+}
+
+/// What one mesh has as floats another has as integers.
+#[test]
+fn values_of_one_name_have_one_type_in_a_scene() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let floats = model.floats("VEC2", 2, &[0.0, 0.0, 2.0, 0.0, 0.0, 0.5]);
+    let bytes = model.bytes("VEC2", 2, &[0, 0, 255, 0, 0, 51]);
+    model.accessors[bytes]["normalized"] = true.into();
+    let colours = model.floats("VEC3", 3, &[0.5; 9]);
+    let opaque = model.bytes("VEC4", 4, &[255, 0, 51, 102].repeat(3));
+    model.accessors[opaque]["normalized"] = true.into();
+    let turned = model.bytes("VEC3", 3, &[0, 0, 127].repeat(3));
+    model.accessors[turned]["componentType"] = 5120.into();
+    model.accessors[turned]["normalized"] = true.into();
+    let first = json!({ "attributes": { "POSITION": position, "TEXCOORD_0": floats, "COLOR_0": colours, "NORMAL": turned } });
+    let second = json!({ "attributes": { "POSITION": position, "TEXCOORD_0": bytes, "COLOR_0": opaque, "NORMAL": turned } });
+    let check = |file: &MeshFile| {
+        let names: Vec<&str> = file
+            .attributes
+            .list
+            .iter()
+            .map(|a| a.name.as_str())
+            .filter(|n| n.starts_with(char::is_uppercase))
+            .collect();
+        assert_eq!(names.len(), 3, "{names:?}");
+        let texture: Vec<f64> = at_corners(file, "TEXCOORD_0").into_iter().flatten().collect();
+        let fifth = f64::from(0.2f32);
+        assert_eq!(texture, [0.0, 0.0, 2.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, fifth]);
+        let colour: Vec<f64> = at_corners(file, "COLOR_0").into_iter().flatten().collect();
+        assert_eq!(colour[..4], [0.5, 0.5, 0.5, 1.0]);
+        assert_eq!(colour[12..16], [1.0, 0.0, fifth, f64::from(0.4f32)]);
+    };
+    let of_primitives = one_mesh(json!([first, second]));
+    check(&model.read(of_primitives).unwrap());
+    let of_meshes = json!({
+        "meshes": [{ "primitives": [first] }, { "primitives": [second] }],
+        "nodes": [{ "mesh": 0 }, { "mesh": 1, "translation": [5, 0, 0] }],
+        "scenes": [{ "nodes": [0, 1] }],
+    });
+    let document = model.document(of_meshes);
+    check(&read(&document).unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    fs::write(&path, document.to_string()).unwrap();
+    let packed = io::read_scene(&path).unwrap().pack().unwrap();
+    check(&packed);
+    let again = io::Scene::unpack(&packed.mesh, &packed.attributes).unwrap().unwrap();
+    assert_eq!(again.meshes.len(), 2);
+    assert_eq!(named(&again.meshes[1], "TEXCOORD_0").values, Values::F32(vec![0.0, 0.0, 1.0, 0.0, 0.0, 0.2]));
+}
+
+#[test]
+fn instances_on_the_gpu_are_instances() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let places = model.floats("VEC3", 3, &[0.0, 0.0, 0.0, 10.0, 0.0, 0.0, 20.0, 0.0, 0.0]);
+    let turns = model.bytes("VEC4", 4, &[0, 0, 0, 127, 0, 0, 127, 0, 0, 0, 0, 127]);
+    model.accessors[turns]["componentType"] = 5120.into();
+    model.accessors[turns]["normalized"] = true.into();
+    let scales = model.floats("VEC3", 3, &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 4.0]);
+    let ids = model.bytes("SCALAR", 1, &[1, 2, 3]);
+    let two = model.floats("VEC3", 3, &[0.0; 6]);
+    let document = |attributes: Value| {
+        let extension = json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } });
+        let mut rest = one_mesh(json!([{ "attributes": { "POSITION": position } }]));
+        rest["nodes"] =
+            json!([{ "mesh": 0, "name": "tree", "translation": [0, 5, 0], "extensions": extension }]);
+        rest["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+        model.document(rest)
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    let all = json!({ "TRANSLATION": places, "ROTATION": turns, "SCALE": scales, "_ID": ids });
+    fs::write(&path, document(all).to_string()).unwrap();
+    let scene = io::read_scene(&path).unwrap();
+    assert_eq!((scene.meshes.len(), scene.instances.len()), (1, 3));
+    assert!(scene.instances.iter().all(|instance| instance.name == "tree"));
+    assert_eq!(
+        scene.instances[1].transform,
+        [[-1.0, 0.0, 0.0, 10.0], [0.0, -1.0, 0.0, 5.0], [0.0, 0.0, 1.0, 0.0]]
+    );
+    assert_eq!(
+        scene.instances[2].transform,
+        [[2.0, 0.0, 0.0, 20.0], [0.0, 3.0, 0.0, 5.0], [0.0, 0.0, 4.0, 0.0]]
+    );
+    assert_eq!(scene.report.ignored, ["_ID of EXT_mesh_gpu_instancing"]);
+    let refused = |attributes: Value| refusal(read(&document(attributes)));
+    let uneven = json!({ "TRANSLATION": places, "SCALE": two });
+    assert_eq!(refused(uneven), "node 0: EXT_mesh_gpu_instancing with parts of different lengths");
+    assert_eq!(refused(json!({ "TRANSLATION": ids })), "accessor 4: TRANSLATION of 1 numbers");
+    assert_eq!(refused(json!({ "SCALE": 99 })), "accessor 99: does not exist");
+    // Numbers that no buffer has are zeros, as many as one likes.
+    let count = 1_000_000;
+    let many = model.accessor(json!({ "componentType": 5126, "count": count, "type": "VEC3" }));
+    let extension = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": many } } });
+    let mut rest = one_mesh(json!([{ "attributes": { "POSITION": position } }]));
+    rest["nodes"][0]["extensions"] = extension;
+    assert!(refusal(model.read(rest)).contains("out of proportion"));
+}
+
+#[test]
+fn nodes_without_names_have_those_of_ancestors() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let primitives = json!([{ "attributes": { "POSITION": position } }]);
+    let rest = json!({
+        "meshes": [{ "primitives": primitives }, { "primitives": primitives, "name": "wheel" }],
+        "nodes": [
+            { "name": "car", "children": [1, 2, 4] },
+            { "mesh": 0 },
+            { "name": "front", "children": [3] }, { "mesh": 1 },
+            { "mesh": 1 },
+        ],
+        "scenes": [{ "nodes": [0] }],
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    fs::write(&path, model.document(rest).to_string()).unwrap();
+    let scene = io::read_scene(&path).unwrap();
+    let names: Vec<&str> = scene.instances.iter().map(|instance| instance.name.as_str()).collect();
+    assert_eq!(names, ["car", "front", "wheel"]);
 }
 
 #[test]
@@ -701,11 +873,13 @@ fn a_glb_is_framed_as_it_should_be() {
         vertex("small int", 3, Values::I8(vec![-1, 2, -3, 4, -5, 6, -7, 8, -9])),
     ];
     let mut bytes = Vec::new();
-    let report = io::write_with_attributes_to(&mut bytes, &mesh, &attributes, Format::Glb).unwrap();
-    assert_eq!(report.ignored, ["id", "bad", "JOINTS_0", "wide"]);
+    let losses = io::write_with_attributes_to(&mut bytes, &mesh, &attributes, Format::Glb).unwrap();
+    assert_eq!(lost(&losses, LossKind::Dropped), ["id", "bad", "JOINTS_0", "wide"]);
+    assert_eq!(lost(&losses, LossKind::NamesChanged), ["heat (_heat)", "small int (_small int)"]);
+    assert_eq!(lost(&losses, LossKind::ValuesRounded), ["heat"]);
     let again = io::read_bytes(&bytes, Format::Glb).unwrap();
-    assert_eq!(named(&again, "_HEAT").values, Values::F32(vec![0.1, 0.2, 0.3]));
-    assert_eq!(named(&again, "_SMALL_INT").values, attributes.list[5].values);
+    assert_eq!(named(&again, "_heat").values, Values::F32(vec![0.1, 0.2, 0.3]));
+    assert_eq!(named(&again, "_small int").values, attributes.list[5].values);
 }
 
 #[test]
@@ -729,14 +903,15 @@ fn tangents_are_written_beside_normals() {
     attributes.list = vec![vertex("TANGENT", Semantic::Generic, 4, Values::F32(tangents))];
     let write = |attributes: &lwc::mesh::Attributes| {
         let mut bytes = Vec::new();
-        let report = io::write_with_attributes_to(&mut bytes, &mesh, attributes, Format::Glb).unwrap();
-        (io::read_bytes(&bytes, Format::Glb).unwrap(), report.ignored)
+        let losses = io::write_with_attributes_to(&mut bytes, &mesh, attributes, Format::Glb).unwrap();
+        (io::read_bytes(&bytes, Format::Glb).unwrap(), losses)
     };
-    assert_eq!(write(&attributes).1, ["TANGENT"], "they mean nothing alone");
+    assert_eq!(lost(&write(&attributes).1, LossKind::Dropped), ["TANGENT"], "they mean nothing alone");
     let normals = Values::F32([exact, exact, [0.0, 0.0, 2.0]].concat());
     attributes.list.push(vertex("NORMAL", Semantic::Normal, 3, normals));
-    let (again, ignored) = write(&attributes);
-    assert!(ignored.is_empty());
+    let (again, losses) = write(&attributes);
+    let converted = ["TANGENT (to length 1)", "NORMAL (to length 1)"];
+    assert_eq!((lost(&losses, LossKind::ValuesConverted), losses.len()), (converted.to_vec(), 2));
     let wanted = [&exact[..], &[1.0], &[0.0, 0.6, 0.8, -1.0], &[1.0, 0.0, 0.0, 1.0]].concat();
     assert_eq!(named(&again, "TANGENT").values, Values::F32(wanted));
     assert_eq!(named(&again, "NORMAL").values, Values::F32([exact, exact, [0.0, 0.0, 1.0]].concat()));

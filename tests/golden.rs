@@ -220,6 +220,12 @@ fn the_golden_streams_cover_the_syntax() {
         for (feature, is_there) in [
             ("narrow header", payload(b'H')[0] & 1 == 0),
             ("wide header", payload(b'H')[0] & 1 == 1),
+            ("cube", payload(b'H')[0] & 16 == 0),
+            ("lattice from its origin on", payload(b'H')[0] & 48 == 16),
+            ("lattice with an offset", payload(b'H')[0] & 49 == 49),
+            ("narrow lattice with an offset", payload(b'H')[0] & 49 == 48),
+            ("lattice and exact coordinates", payload(b'H')[0] & 16 > 0 && exact(&[])),
+            ("lattice and compensation", payload(b'H')[0] & 16 > 0 && chunks.iter().any(|c| c.kind == b'c')),
             ("30 bits", info.quantization_bits() == 30),
             ("provenance in the header", payload(b'H')[0] & 2 == 2),
             ("provenance in a chunk", chunks.iter().any(|c| c.kind == b'p')),
@@ -236,7 +242,7 @@ fn the_golden_streams_cover_the_syntax() {
             ("refinement last", kinds.last() == Some(&PassKind::Refine)),
             ("padding", rows.iter().enumerate().any(|(i, row)| is_padded(i, row))),
             ("attributes", chunks.iter().any(|c| c.kind == b'd') && chunks.iter().any(|c| c.kind == b'a')),
-            ("unknown chunk", chunks.iter().any(|c| !b"HpdnmLBSRatgixvo".contains(&c.kind))),
+            ("unknown chunk", chunks.iter().any(|c| !b"HpdnmkLBSRatgixvo".contains(&c.kind))),
             ("stitching in the base mesh", chunks.iter().filter(|c| c.kind == b'g').count() == 1),
             ("stitching in splits", chunks.iter().filter(|c| c.kind == b'g').count() > 1),
             ("loose", chunks.iter().any(|c| c.kind == b'i')),
@@ -247,6 +253,7 @@ fn the_golden_streams_cover_the_syntax() {
             ("exact values", chunks.iter().any(|c| c.kind == b'v' && c.payload.starts_with(&[1]))),
             ("order", chunks.iter().any(|c| c.kind == b'o')),
             ("scene", chunks.iter().any(|c| c.kind == b'n')),
+            ("metadata", chunks.iter().any(|c| c.kind == b'k')),
             ("materials in front", is_in_front(&chunks, b'm')),
             ("materials behind", chunks.iter().any(|c| c.kind == b'm') && !is_in_front(&chunks, b'm')),
         ] {
@@ -268,7 +275,9 @@ mod make {
         Attribute, ComponentType, Domain, GltfMaterials, IDENTITY, Instance, NO_ENTRY, SceneTable, Semantic,
         Values,
     };
-    use lwc::{EncodeOptions, Partition, Profile, TriMesh, encode, encode_with_attributes};
+    use lwc::{
+        EncodeOptions, GridChoice, Lattice, Partition, Profile, TriMesh, encode, encode_with_attributes,
+    };
     use std::path::Path;
     use std::sync::Once;
 
@@ -416,6 +425,27 @@ mod make {
                 }),
             ),
             ("unknown-chunks", commented),
+            ("lattice-with-offset", {
+                let step = [0.01, 0.02, 0.003];
+                stream(&noisy(sphere(2), 16, 0.02), |o| {
+                    o.grid = on(Lattice { origin: [0.3, -7.1, 1e4], step })
+                })
+            }),
+            ("lattice-of-float32", {
+                let lattice = Lattice { origin: [0.0; 3], step: [0.125, 0.0625, 0.25] };
+                stream(&noisy(grid(9, 8, bumpy), 17, 0.05), |o| o.grid = on(lattice))
+            }),
+            ("lattice-exact", {
+                let lattice = Lattice { origin: [-5.0, 2.5, 0.1], step: [0.1, 1e-3, 0.7] };
+                stream(&noisy(single_and_loose(), 18, 0.01), |o| {
+                    everything(o);
+                    o.grid = on(lattice);
+                })
+            }),
+            ("own-step-of-each-axis", {
+                let thin = map_positions(torus.clone(), |p| [1e4 * p[0], p[1], 1e-3 * p[2]]);
+                stream(&thin, |o| o.quantization_bits = 10)
+            }),
             ("max-bumps", stream(&noisy(grid(36, 30, bumpy), 2, 0.03), |o| o.profile = Some(Profile::Max))),
             ("max-strip-with-ears", {
                 stream(&noisy(strip(120), 3, 0.02), |o| {
@@ -506,6 +536,7 @@ mod make {
                 list.push(attributed::materials(&mesh));
                 encode_with_attributes(&mesh, &attributed::all(list), &options, &|_| {}).unwrap().bytes
             }),
+            ("metadata", metadata()),
             ("scene", scene()),
             ("late-materials", {
                 let mut chunks = chunks::split(&scene());
@@ -519,6 +550,19 @@ mod make {
                 chunks::join(&chunks)
             }),
         ]
+    }
+
+    fn on(lattice: Lattice) -> GridChoice {
+        GridChoice::Lattice(lattice)
+    }
+
+    /// A tetrahedron somewhere on Earth.
+    fn metadata() -> Vec<u8> {
+        let mut attributes = attributed::all(Vec::new());
+        let pair = |key: &str, text: &str| (key.to_owned(), text.to_owned());
+        attributes.metadata = [pair("crs.wkt", "GEOGCS[\"Höhe\"]"), pair("crs.geokeys", "")].into();
+        let options = EncodeOptions::default();
+        encode_with_attributes(&tetrahedron(), &attributes, &options, &|_| {}).unwrap().bytes
     }
 
     /// Two meshes in three places, with a material each.

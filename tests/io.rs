@@ -8,6 +8,7 @@ use lwc::{
     TriMesh,
     io::{self, Format, MeshFile, Place, ReadError, WriteError},
 };
+use std::io::Write;
 use std::{
     fs,
     path::Path,
@@ -133,7 +134,18 @@ fn stl_normals_are_unit_and_counter_clockwise() {
 fn every_ending_round_trips_through_a_file() {
     let directory = tempfile::tempdir().unwrap();
     let mesh = torus(10);
-    for name in ["a.obj", "a.ply", "a.stl", "B.OBJ", "a.obj.zst", "a.ply.zst", "a.stl.zst", "a.b.Ply.ZST"] {
+    for name in [
+        "a.obj",
+        "a.ply",
+        "a.stl",
+        "B.OBJ",
+        "a.obj.zst",
+        "a.ply.zst",
+        "a.stl.zst",
+        "a.b.Ply.ZST",
+        "a.obj.gz",
+        "B.ply.GZ",
+    ] {
         let path = directory.path().join(name);
         io::write(&path, &mesh).unwrap();
         let file = io::read(&path).unwrap();
@@ -142,7 +154,7 @@ fn every_ending_round_trips_through_a_file() {
             assert_eq!(file.mesh, mesh, "{name}");
         }
     }
-    assert_eq!(fs::read_dir(&directory).unwrap().count(), 8, "no temporary files remain");
+    assert_eq!(fs::read_dir(&directory).unwrap().count(), 10, "no temporary files remain");
 }
 
 #[test]
@@ -150,7 +162,7 @@ fn endings_name_formats() {
     let format = |name: &str| Format::from_path(name);
     assert_eq!(format("dir.ply/model.obj"), Some(Format::Obj));
     assert_eq!(format("model.STL.zst"), Some(Format::Stl));
-    for unknown in ["model", "model.zst", "model.off", "obj", ".obj", "model.obj.gz", ""] {
+    for unknown in ["model", "model.zst", "model.off", "obj", ".obj", "model.gz", "model.obj.gz.zst", ""] {
         assert_eq!(format(unknown), None, "{unknown}");
     }
     assert!(matches!(io::read("model.off"), Err(ReadError::UnknownEnding)));
@@ -383,11 +395,11 @@ fn ply_reads_all_types_and_skips_extras() {
 }
 
 #[test]
-fn ply_text_numbers_are_float64_whatever_the_type_says() {
+fn ply_text_numbers_that_no_float32_has_are_float64_whatever_the_type_says() {
     let header =
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
     let mesh = ply(format!("{header}end_header\n0.1 5500000.001 1e-300\n")).unwrap().mesh;
-    assert_eq!(mesh.positions(), [[0.1, 5_500_000.001, 1e-300]]);
+    assert_eq!(mesh.positions(), [[f64::from(0.1f32), 5_500_000.001, 1e-300]]);
 }
 
 #[test]
@@ -528,6 +540,45 @@ fn truncated_binary_ply_is_refused_at_every_offset() {
             bytes.len()
         );
     }
+}
+
+#[test]
+fn damaged_gzip_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("a.ply.gz");
+    io::write(&path, &torus(10)).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let mut flipped = bytes.clone();
+    let last = flipped.len() - 5;
+    flipped[last] ^= 1;
+    for damaged in [&bytes[..bytes.len() - 1], &bytes[..bytes.len() / 2], b"not gzip at all", &flipped] {
+        fs::write(&path, damaged).unwrap();
+        let error = io::read(&path).expect_err("damaged");
+        assert!(matches!(error, ReadError::Gzip(_)), "{error}");
+    }
+    // Several files in a row are one, as for gunzip.
+    let mut parts = Vec::new();
+    for part in ["v 0 0 0\nv 1 0 0\n", "v 0 1 0\nf 1 2 3\n"] {
+        let mut packer = flate2::write::GzEncoder::new(parts, flate2::Compression::default());
+        packer.write_all(part.as_bytes()).unwrap();
+        parts = packer.finish().unwrap();
+    }
+    let path = directory.path().join("a.obj.gz");
+    fs::write(&path, parts).unwrap();
+    assert_eq!(io::read(&path).unwrap().mesh.triangles(), [[0, 1, 2]]);
+}
+
+#[test]
+fn gzip_out_of_proportion_is_refused() {
+    let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    let line = [vec![b'#'; (1 << 20) - 1], vec![b'\n']].concat();
+    (0..8).for_each(|_| packer.write_all(&line).unwrap());
+    let bytes = packer.finish().unwrap();
+    let mut options = io::ReadOptions::default();
+    (options.free_bytes, options.max_ratio) = (1 << 20, 100);
+    let error = options.read_from(&bytes[..], Format::Obj).expect_err("unpacked");
+    assert!(matches!(error, ReadError::Ratio { most, .. } if most >= 1 << 20), "{error}");
+    assert!(options.any_ratio().read_from(&bytes[..], Format::Obj).is_ok());
 }
 
 #[test]

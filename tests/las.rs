@@ -207,6 +207,119 @@ fn extra_bytes_and_near_infrared_are_kept() {
     assert_eq!(file.report.ignored, ["returns, angles, times and sources of points", "extra bytes"]);
 }
 
+/// The file with records of the user `LASF_Projection` in front of the points; those from `behind` on, behind them.
+fn with_projection(bytes: &[u8], records: &[(u16, Vec<u8>)], behind: usize) -> Vec<u8> {
+    let start = record(bytes, 0);
+    let mut head = bytes[..start].to_vec();
+    let user = b"LASF_Projection\0";
+    for (id, data) in &records[..behind] {
+        head.extend([0; 2]);
+        head.extend(user);
+        head.extend(id.to_le_bytes());
+        head.extend((data.len() as u16).to_le_bytes());
+        head.extend([0; 32]);
+        head.extend(data);
+    }
+    let new_start = head.len() as u32;
+    head[96..100].copy_from_slice(&new_start.to_le_bytes());
+    head.extend(&bytes[start..]);
+    if behind < records.len() {
+        let end = head.len() as u64;
+        head[235..243].copy_from_slice(&end.to_le_bytes());
+        head[243..247].copy_from_slice(&((records.len() - behind) as u32).to_le_bytes());
+    }
+    for (id, data) in &records[behind..] {
+        head.extend([0; 2]);
+        head.extend(user);
+        head.extend(id.to_le_bytes());
+        head.extend((data.len() as u64).to_le_bytes());
+        head.extend([0; 32]);
+        head.extend(data);
+    }
+    head
+}
+
+fn projection() -> Vec<(u16, Vec<u8>)> {
+    let keys = [1u16, 1, 0, 1, 3072, 0, 1, 32633].map(u16::to_le_bytes).concat();
+    let doubles = [0.5f64, -1e-7].map(f64::to_le_bytes).concat();
+    vec![
+        (34735, keys),
+        (34736, doubles),
+        (34737, b"WGS 84|\0".to_vec()),
+        (2112, "GEOGCS[\"H\u{f6}he\"]\0".into()),
+    ]
+}
+
+#[test]
+fn coordinate_reference_systems_are_metadata() {
+    let expected = [
+        ("crs.geokeys", "1 1 0 1 3072 0 1 32633"),
+        ("crs.geokeys.doubles", "0.5 -0.0000001"),
+        ("crs.geokeys.ascii", "WGS 84|"),
+        ("crs.wkt", "GEOGCS[\"H\u{f6}he\"]"),
+    ];
+    let expected: Vec<(String, String)> = expected.map(|(key, text)| (key.into(), text.into())).to_vec();
+    for (format, behind) in [(1, 4), (6, 4), (6, 0), (7, 2)] {
+        let bytes = with_projection(&las(format, &SQUARE), &projection(), behind);
+        let file = read(&bytes).unwrap();
+        assert_eq!(file.attributes.metadata[..], expected, "{format} {behind}");
+        for end in (0..bytes.len()).rev().step_by(3) {
+            let _ = read(&bytes[..end]);
+        }
+    }
+    // What came first holds; what is not known, or too long, is named.
+    let mut records = projection();
+    records.push((2112, b"another".to_vec()));
+    records.push((2111, Vec::new()));
+    records.insert(0, (34737, vec![b'x'; 70_000]));
+    let file = read(&with_projection(&las(6, &SQUARE), &records, 0)).unwrap();
+    assert_eq!(file.attributes.metadata[..], expected);
+    let named = ["crs.geokeys.ascii of 70000 bytes", "record 2111 of LASF_Projection"];
+    assert_eq!(file.report.ignored[..2], named);
+}
+
+#[cfg(feature = "encoder")]
+#[test]
+fn metadata_goes_through_a_stream_and_into_other_formats() {
+    let file = read(&with_projection(&las(6, &SQUARE), &projection(), 4)).unwrap();
+    let options = lwc::EncodeOptions::default();
+    let encoded = lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &|_| {}).unwrap();
+    assert_eq!(encoded.info.metadata(), &file.attributes.metadata[..]);
+    let mut decoder = lwc::Decoder::new(lwc::Limits::default());
+    decoder.feed(&encoded.bytes).unwrap();
+    while decoder.step().unwrap().is_some() {}
+    let (mesh, attributes) = decoder.preview_with_attributes().unwrap();
+    assert_eq!(attributes.metadata, file.attributes.metadata);
+    for format in [
+        Format::Ply,
+        #[cfg(feature = "gltf")]
+        Format::Glb,
+    ] {
+        let mut bytes = Vec::new();
+        io::write_with_attributes_to(&mut bytes, &mesh, &attributes, format).unwrap();
+        let again = io::read_bytes(&bytes, format).unwrap();
+        let sorted = |pairs: &[(String, String)]| {
+            let mut pairs = pairs.to_vec();
+            pairs.sort();
+            pairs
+        };
+        assert_eq!(sorted(&again.attributes.metadata), sorted(&attributes.metadata), "{format:?}");
+    }
+    let report = io::write_with_attributes_to(Vec::new(), &mesh, &attributes, Format::Stl).unwrap();
+    assert!(report.iter().any(|loss| loss.subject == "crs.wkt"), "{report}");
+}
+
+#[test]
+fn names_of_extra_bytes_are_unique() {
+    let one: fn(u8) -> Vec<u8> = |k| vec![k];
+    let fields: [Field; 4] =
+        [(1, "intensity", one, None), (1, "red", one, None), (1, "a b", one, None), (1, "a_b", one, None)];
+    let file = read(&with_extra_bytes(&las(3, &SQUARE), &fields)).unwrap();
+    let names: Vec<&str> = file.attributes.list.iter().map(|a| a.name.as_str()).collect();
+    let expected = ["classification", "intensity", "red green blue", "intensity_2", "red_2", "a_b", "a_b_2"];
+    assert_eq!(names, expected);
+}
+
 #[test]
 fn returns_and_cells_choose_points() {
     let bytes = las(3, &SQUARE);

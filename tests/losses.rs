@@ -102,3 +102,66 @@ fn a_decoder_says_what_has_not_come() {
     let cut = after(DecodeOptions::new(), bytes.len() - 1);
     assert_eq!(cut.to_string(), "left out: order");
 }
+
+#[cfg(feature = "cli")]
+mod program {
+    use super::common::workshop::Workshop;
+    use std::fs;
+
+    const SEAM: &str = "v 0.1 0 0\nv 1.1 0 0\nv 1.1 1 0.12345\nv 0.1 1 0\nvt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0.1 0.2\n\
+                        f 1/1 2/2 3/3\nf 1/4 3/3 4/2\n";
+
+    fn kinds(report: &serde_json::Value) -> Vec<(&str, &str)> {
+        let losses = report["losses"].as_array().unwrap().iter();
+        losses.map(|loss| (loss["stage"].as_str().unwrap(), loss["kind"].as_str().unwrap())).collect()
+    }
+
+    #[test]
+    fn strict_writes_nothing_where_anything_is_lost() {
+        let workshop = Workshop::new();
+        fs::write(workshop.path("seam.obj"), SEAM).unwrap();
+        let stderr = workshop.fails("encode seam.obj --strict", 7);
+        assert!(stderr.contains("positions rounded") && stderr.contains("another order"), "{stderr}");
+        assert!(!workshop.path("seam.lwc").exists());
+        workshop.ok("encode seam.obj --strict --lossless --keep-order");
+        let stderr = workshop.fails("decode seam.lwc -o seam.stl --strict", 7);
+        assert!(stderr.contains("left out: vt"), "{stderr}");
+        assert!(!workshop.path("seam.stl").exists());
+        workshop.ok("encode ball.ply --lossless --keep-order");
+        workshop.fails("decode ball.lwc --level 1 -o ball.glb --strict", 7);
+        workshop.ok("decode seam.lwc -o back.obj --strict");
+        assert_eq!(workshop.mesh("back.obj"), workshop.mesh("seam.obj"));
+    }
+
+    #[test]
+    fn losses_of_every_stage_are_in_json() {
+        let workshop = Workshop::new();
+        fs::write(workshop.path("quad.obj"), format!("{SEAM}f 1 2 3 4\nl 1 2\n")).unwrap();
+        let encoded = workshop.json("encode quad.obj --json");
+        let expected = [
+            ("reading", "polygons-triangulated"),
+            ("reading", "dropped"),
+            ("encoding", "positions-rounded"),
+            ("encoding", "values-rounded"),
+            ("encoding", "reordered"),
+        ];
+        assert_eq!(kinds(&encoded), expected);
+        let decoded = workshop.json("decode quad.lwc -o quad.glb --json");
+        assert_eq!((&decoded["complete"], &decoded["triangles"]), (&true.into(), &4.into()));
+        assert!(kinds(&decoded).contains(&("writing", "vertices-split")), "{decoded}");
+        workshop.ok("encode ball.ply");
+        let cut = workshop.json("decode ball.lwc -o cut.ply --json --bytes 600");
+        assert_eq!((&cut["complete"], kinds(&cut)[0]), (&false.into(), ("decoding", "coarser")));
+    }
+
+    #[test]
+    fn what_an_option_asks_for_is_no_warning() {
+        let workshop = Workshop::new();
+        fs::write(workshop.path("seam.obj"), SEAM).unwrap();
+        let (_, stderr) = workshop.ok("encode seam.obj --no-attributes");
+        assert!(!stderr.contains("warning") && stderr.contains("left out: vt"), "{stderr}");
+        workshop.ok("encode ball.ply --lossless");
+        let (_, stderr) = workshop.ok("decode ball.lwc --level 1 -o coarse.ply");
+        assert!(!stderr.contains("warning") && stderr.contains("left out: exact coordinates"), "{stderr}");
+    }
+}

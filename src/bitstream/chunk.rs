@@ -47,6 +47,8 @@ pub(crate) mod kind {
     /// The meshes of a scene, and how materials look.
     pub(crate) const SCENE: u8 = b'n';
     pub(crate) const MATERIALS: u8 = b'm';
+    /// What else is known of the whole.
+    pub(crate) const METADATA: u8 = b'k';
     /// Coordinates bit for bit.
     pub(crate) const EXACT: u8 = b'x';
     /// Values of attributes bit for bit, and those of isolated vertices and degenerate faces.
@@ -56,7 +58,10 @@ pub(crate) mod kind {
 
     /// True if a known kind belongs directly before or after a pass.
     pub(crate) fn is_known_elsewhere(kind: u8) -> bool {
-        matches!(kind, PROVENANCE | COMPENSATION | SCENE | DECLARATIONS | ATTRIBUTES | ANNOUNCED | STITCHING)
+        matches!(
+            kind,
+            PROVENANCE | COMPENSATION | SCENE | METADATA | DECLARATIONS | ATTRIBUTES | ANNOUNCED | STITCHING
+        )
     }
 
     /// True if the chunk is a pass: the table of passes knows its length.

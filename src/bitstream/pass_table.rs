@@ -1,7 +1,8 @@
 //! The table of passes (`format/SPEC.md`, section 4.3): every number as its distance from what the
 //! passes before it let expect.
 
-use super::header::{Action, Grid, MAX_PASSES, MAX_VERTICES_PER_BYTE, Pass};
+use super::grid::Grid;
+use super::header::{Action, MAX_PASSES, MAX_VERTICES_PER_BYTE, Pass};
 use crate::entropy::bits::BitReader;
 #[cfg(any(feature = "encoder", test))]
 use crate::entropy::bits::BitWriter;
@@ -196,7 +197,9 @@ pub(crate) fn write_passes(passes: &[Pass]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    const GRID: Grid = Grid { quantization_bits: 12, origin: [0.5, -1.0, 0.0], side: 3.0 };
+    fn grid() -> Grid {
+        Grid::cube(12, [0.5, -1.0, 0.0], 3.0)
+    }
 
     #[test]
     fn tables_return_and_lies_are_refused() {
@@ -207,21 +210,24 @@ mod tests {
             Pass { action: Action::Split, vertices: 70, triangles: 140, bytes: 300 },
         ];
         let payload = write_passes(&passes);
-        assert_eq!(read_passes(&payload, &GRID).as_deref(), Ok(&passes[..]));
+        assert_eq!(read_passes(&payload, &grid()).as_deref(), Ok(&passes[..]));
         for cut in 0..payload.len() {
-            assert!(read_passes(&payload[..cut], &GRID).is_err());
+            assert!(read_passes(&payload[..cut], &grid()).is_err());
         }
         let mut huge = passes;
         huge[3].vertices = 300 * 64 + 65;
         huge[3].triangles = 2 * huge[3].vertices;
-        assert!(read_passes(&write_passes(&huge), &GRID).is_err());
+        assert!(read_passes(&write_passes(&huge), &grid()).is_err());
         let mut deep = passes.to_vec();
         deep.push(passes[2]);
-        assert!(read_passes(&write_passes(&deep), &GRID).is_err(), "thirteen bits on a grid of twelve");
+        assert!(read_passes(&write_passes(&deep), &grid()).is_err(), "thirteen bits on a grid of twelve");
         for quantization_bits in [0, 13, 32, u32::MAX - 1, u32::MAX] {
             let mut wide = passes;
             wide[0].action = Action::Base { quantization_bits };
-            assert!(read_passes(&write_passes(&wide), &GRID).is_err(), "a base of {quantization_bits} bits");
+            assert!(
+                read_passes(&write_passes(&wide), &grid()).is_err(),
+                "a base of {quantization_bits} bits"
+            );
         }
     }
 }

@@ -5,7 +5,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, value_parser};
 use lwc::Limits;
 use lwc::descriptors::{Descriptor, FeatureChoice, Window};
-use lwc::io::ReadOptions;
+use lwc::io::{Format, ReadOptions};
 
 /// What every command knows.
 #[derive(Debug, clap::Args)]
@@ -26,9 +26,12 @@ pub struct Global {
 /// How mesh files are read.
 #[derive(Debug, clap::Args)]
 pub struct Reading {
-    /// Read even .zst files that unpack to both more than 256 MiB and more than 1000 times their size.
+    /// Read even .gz and .zst files that unpack to both more than 256 MiB and more than 1000 times their size.
     #[arg(long)]
     pub any_ratio: bool,
+    /// Format of a mesh from standard input, `-`: obj, ply, stl, glb, gltf, las or laz, plain or compressed.
+    #[arg(long, value_name = "FORMAT", value_parser = format_parser())]
+    pub format: Option<Format>,
 }
 
 impl Reading {
@@ -95,6 +98,11 @@ impl LimitArgs {
         let Self { max_memory, max_vertices, max_work } = *self;
         Limits { max_memory, max_vertices, max_work, ..Limits::default() }
     }
+}
+
+fn format_parser() -> impl TypedValueParser<Value = Format> {
+    PossibleValuesParser::new(Format::ALL.iter().map(|format| format.extension()))
+        .try_map(|name| Format::from_extension(&name).ok_or("unknown format"))
 }
 
 pub fn descriptor_parser() -> impl TypedValueParser<Value = Descriptor> {

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// Measure the distance between two surfaces.
 ///
 /// Root mean square and maximum of the distance to the nearest point of the other surface, in both directions.
-/// Each file is a mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst) or a stream (.lwc).
+/// Each file is a mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.gz) or a stream (.lwc).
 #[derive(Debug, clap::Args)]
 pub struct Compare {
     /// Reference: relative values are divided by the diagonal of its bounding box.

@@ -2,15 +2,21 @@
 
 use super::args::LimitArgs;
 use super::exit::Failure;
-use super::output::{Destination, say_written, size_of, warn_left_out, with_ending};
+use super::losses::{self, Strictness};
+use super::mesh_out::MeshOut;
+use super::output::{Destination, print_json, say_written, size_of, with_ending};
 use super::quantity;
 use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, note_if_no_level, reached};
 use super::ui::Ui;
+use super::writing::Writing;
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use lwc::io::{Format, Scene, WriteError, WriteReport};
+use lwc::io::{Format, WriteError};
+use lwc::losses::{Loss, Losses, Stage};
 use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
+use serde_json::{Value, json};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Decode a stream, or as much of it as there is.
@@ -44,7 +50,15 @@ pub struct Decode {
     #[arg(long)]
     pub salvage: bool,
     #[command(flatten)]
+    pub strictness: Strictness,
+    /// Print one JSON object instead of the summary (to standard error with `-o -`).
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
     pub limits: LimitArgs,
+    // Last: its heading would cover what follows.
+    #[command(flatten)]
+    pub writing: Writing,
 }
 
 /// Reads and decodes at once, writes, reports.
@@ -73,12 +87,69 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     if destination == Destination::Stdout {
         bar.hide();
     }
-    let report = write(&destination, format, &mesh, &attributes)?;
+    let options = args.writing.options_for_decoded(&decoder);
+    let out = MeshOut::new((&mesh, &attributes), options, format).with_context(|| destination.name())?;
+    let mut losses = decoder.losses();
+    if args.strictness.strict {
+        losses.append(out.losses().with_context(|| destination.name())?);
+        args.strictness.check(&losses).with_context(|| source.name())?;
+    }
+    losses.append(out.write(&destination)?);
     drop(bar);
-    warn_left_out(&destination, &report, ui);
-    let how_far = reached(&decoder).unwrap_or_default();
-    say_written(&destination, &format!("{}, {how_far}", size_of(&mesh)), ui);
-    Ok(())
+    Decoded { args, source: source.name(), decoder: &decoder, mesh: &mesh, destination, losses }.report(ui)
+}
+
+/// What is told at the end.
+struct Decoded<'a> {
+    args: &'a Decode,
+    source: String,
+    decoder: &'a Decoder,
+    mesh: &'a TriMesh,
+    destination: Destination,
+    losses: Losses,
+}
+
+impl Decoded<'_> {
+    fn report(&self, ui: &Ui) -> anyhow::Result<()> {
+        let is_asked = self.args.level.is_some() || self.args.bytes.is_some();
+        let as_asked = |loss: &Loss| match loss.stage {
+            Stage::Decoding if is_asked => loss.clone().requested(),
+            _ => loss.clone(),
+        };
+        let losses: Losses = self.losses.iter().map(as_asked).collect();
+        losses::warn(&self.destination.name(), &losses, ui);
+        if self.args.json {
+            let to_file = self.destination != Destination::Stdout;
+            let out: Box<dyn Write> =
+                if to_file { Box::new(io::stdout().lock()) } else { Box::new(io::stderr()) };
+            return Ok(print_json(out, &self.to_json(&losses))?);
+        }
+        let how_far = reached(self.decoder).unwrap_or_default();
+        say_written(&self.destination, &format!("{}, {how_far}", size_of(self.mesh)), ui);
+        if let (Some(usual), Destination::File(_)) = (losses::usual(&losses), &self.destination) {
+            ui.say(&usual);
+        }
+        Ok(())
+    }
+
+    fn to_json(&self, losses: &Losses) -> Value {
+        let level = self.decoder.mesh().map(|mesh| (mesh.level(), mesh.quantization_bits()));
+        let output = match &self.destination {
+            Destination::Stdout => None,
+            Destination::File(path) => Some(path.display().to_string()),
+        };
+        json!({
+            "input": self.source,
+            "output": output,
+            "vertices": self.mesh.num_vertices(),
+            "triangles": self.mesh.num_triangles(),
+            "level": level.map(|(level, _)| level),
+            "levels": self.decoder.info().map(lwc::StreamInfo::finest_level),
+            "quantization_bits": level.map(|(_, bits)| bits),
+            "complete": self.decoder.is_complete(),
+            "losses": losses::to_json(losses),
+        })
+    }
 }
 
 /// Where the mesh goes, if that is said, and as what.
@@ -140,35 +211,6 @@ fn sound_mesh(
 fn note_what_is_missing(decoder: &Decoder, args: &Decode, name: &str, ui: &Ui) {
     let (Some(level), Some(info)) = (args.level, decoder.info()) else { return };
     note_if_no_level(info, level, name, ui);
-    let only_finest: Vec<&str> = info.trailing().iter().map(|trailing| trailing.kind.name()).collect();
-    if level < info.finest_level() && !only_finest.is_empty() {
-        ui.note(name, &format!("only the whole stream has: {}", only_finest.join(", ")));
-    }
-}
-
-fn write(
-    destination: &Destination,
-    format: Format,
-    mesh: &TriMesh,
-    attributes: &Attributes,
-) -> anyhow::Result<WriteReport> {
-    let scene = Scene::unpack(mesh, attributes).with_context(|| destination.name())?;
-    if let Destination::File(path) = destination {
-        let written = match &scene {
-            Some(scene) => lwc::io::write_scene(path, scene),
-            None => lwc::io::write_with_attributes(path, mesh, attributes),
-        };
-        return written.with_context(|| destination.name());
-    }
-    let mut report = WriteReport::default();
-    destination.write(|out| {
-        report = match &scene {
-            Some(scene) => lwc::io::write_scene_to(out, scene, format)?,
-            None => lwc::io::write_with_attributes_to(out, mesh, attributes, format)?,
-        };
-        Ok::<(), WriteError>(())
-    })?;
-    Ok(report)
 }
 
 fn format_parser() -> impl TypedValueParser<Value = Format> {

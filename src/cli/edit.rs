@@ -7,6 +7,7 @@ use super::new_shape;
 use super::output::{Destination, say_written, size_of};
 use super::stream::StreamSource;
 use super::ui::Ui;
+use super::writing::Writing;
 use anyhow::Context;
 use lwc::StreamInfo;
 use lwc::io::{Format, WriteError};
@@ -32,13 +33,15 @@ pub struct Edit {
     /// The changed mesh, with the vertices and triangles of a level.
     #[arg(value_name = "CHANGED")]
     pub changed: PathBuf,
-    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.zst.
+    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.gz.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     #[command(flatten)]
     pub reading: Reading,
     #[command(flatten)]
     pub limits: LimitArgs,
+    #[command(flatten)]
+    pub writing: Writing,
 }
 
 /// A level is decoded with the meshes of a scene in their places, and has other vertices than the stream.
@@ -82,7 +85,9 @@ pub fn run(args: &Edit, ui: &Ui) -> anyhow::Result<()> {
     }
     let mesh = edition.apply(&changed).with_context(|| args.changed.display().to_string())?;
     writing.set(0.0);
-    new_shape::write(path, &mesh, attributes.unwrap_or_default(), ui).with_context(|| destination.name())?;
+    let options = args.writing.options_for_changed(&changed);
+    new_shape::write(path, &mesh, attributes.unwrap_or_default(), &options, ui)
+        .with_context(|| destination.name())?;
     drop(bar);
     say_written(&destination, &format!("{}, details above level {level}", size_of(&mesh)), ui);
     Ok(())

@@ -81,7 +81,9 @@ fn code(error: &anyhow::Error) -> u8 {
             _ => DAMAGED,
         }))
         .or(cause.downcast_ref().map(|error| match error {
-            EncodeError::Option { .. } | EncodeError::DescriptorAttributes(_) => USAGE,
+            EncodeError::Option { .. }
+            | EncodeError::StepTooSmall { .. }
+            | EncodeError::DescriptorAttributes(_) => USAGE,
             EncodeError::TooLarge(_) => LIMIT,
             _ => INPUT,
         }))

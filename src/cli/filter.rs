@@ -8,6 +8,7 @@ use super::new_shape;
 use super::output::{Destination, say_written, size_of};
 use super::quantity;
 use super::ui::Ui;
+use super::writing::Writing;
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lwc::TriMesh;
@@ -31,10 +32,10 @@ Examples:
   lwc filter model.ply --gain 8..10=2 -o bold.ply        # levels 8 to 10 twice as strong
   lwc filter scan.ply --denoise -o clean.ply")]
 pub struct Filter {
-    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst).
+    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.gz).
     #[arg(value_name = "MESH")]
     pub input: PathBuf,
-    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.zst.
+    /// Mesh to write. The ending is the format: .obj .ply .stl .glb .gltf, or compressed, such as .obj.gz.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Multiply the details of levels: 7=0, 5..=0 (5 and finer), ..3=2 (up to 3), 2..4=1.5 (2, 3 and 4).
@@ -62,6 +63,8 @@ pub struct Filter {
     pub growth: f64,
     #[command(flatten)]
     pub reading: Reading,
+    #[command(flatten)]
+    pub writing: Writing,
 }
 
 impl Filter {
@@ -93,6 +96,7 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
     let [reading, filtering, writing] =
         bar.split([("reading", 10.0), ("filtering", filtering), ("writing", 5.0)]);
     let MeshFile { mesh, attributes, .. } = read_mesh(&args.input, &args.reading, reading, ui)?;
+    let options = args.writing.options_for_changed(&mesh);
     let progress = |done: f64| filtering.set(done);
     let mut report = Vec::new();
     let filtered = if args.denoise {
@@ -113,7 +117,8 @@ pub fn run(args: &Filter, ui: &Ui) -> anyhow::Result<()> {
     };
     writing.set(0.0);
     if let Some(Destination::File(path)) = &destination {
-        new_shape::write(path, &filtered, attributes, ui).with_context(|| path.display().to_string())?;
+        new_shape::write(path, &filtered, attributes, &options, ui)
+            .with_context(|| path.display().to_string())?;
     }
     drop(bar);
     if !ui.is_quiet() {

@@ -6,11 +6,11 @@ use super::exit::Failure;
 use super::output::print_json;
 use super::passes;
 use super::rate_distortion;
-use super::stream::StreamSource;
+use super::stream::{StreamSource, read_head};
 use super::ui::Ui;
 use anyhow::Context;
 use lwc::descriptors::Descriptor;
-use lwc::{DecodeOptions, Partition, StreamInfo};
+use lwc::{DecodeOptions, Lattice, Partition, StreamInfo};
 use serde_json::{Value, json};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::PathBuf;
@@ -54,26 +54,13 @@ pub fn run(args: &Info, ui: &Ui) -> anyhow::Result<()> {
 
 /// What the stream says, and how many bytes of it there are; the bytes themselves if it has attributes.
 fn read(reader: &mut dyn Read) -> anyhow::Result<(StreamInfo, u64, Vec<u8>)> {
-    let mut head = Vec::new();
-    let mut wanted = FIRST_BYTES;
-    loop {
-        let read = reader.take(wanted).read_to_end(&mut head).map_err(Failure::Input)?;
-        if let Some(info) = StreamInfo::read(&head)? {
-            if !info.attributes().is_empty() {
-                reader.read_to_end(&mut head).map_err(Failure::Input)?;
-                return Ok((info, head.len() as u64, head));
-            }
-            let rest = io::copy(reader, &mut io::sink()).map_err(Failure::Input)?;
-            return Ok((info, head.len() as u64 + rest, Vec::new()));
-        }
-        if head.is_empty() {
-            return Err(Failure::Empty.into());
-        }
-        if (read as u64) < wanted {
-            return Err(Failure::CutTable.into());
-        }
-        wanted = head.len() as u64;
+    let (info, mut head) = read_head(reader)?;
+    if !info.attributes().is_empty() {
+        reader.read_to_end(&mut head).map_err(Failure::Input)?;
+        return Ok((info, head.len() as u64, head));
     }
+    let rest = io::copy(reader, &mut io::sink()).map_err(Failure::Input)?;
+    Ok((info, head.len() as u64 + rest, Vec::new()))
 }
 
 /// Bytes of each attribute, as far as the stream goes: only decoding tells.
@@ -86,9 +73,6 @@ fn attribute_bytes(bytes: &[u8], args: &Info, ui: &Ui) -> Vec<u64> {
     let _ = decoding.take(bytes, |_| ());
     decoding.decoder.attribute_bytes().to_vec()
 }
-
-/// Bytes that hold the table of most streams; twice as many are tried each time.
-const FIRST_BYTES: u64 = 1 << 14;
 
 /// Names of what chose the odd vertices, as far as the stream says.
 fn descriptor(info: &StreamInfo) -> Option<&'static str> {
@@ -133,9 +117,7 @@ fn print(
         let (level, vertices, triangles) = (finest.level, finest.vertices, finest.triangles);
         writeln!(out, "finest      level {level}, {vertices} vertices, {triangles} triangles")?;
     }
-    let [x, y, z] = info.origin();
-    let (bits, side, step) = (info.quantization_bits(), info.side(), info.step());
-    writeln!(out, "grid        {bits} bits, origin ({x}, {y}, {z}), side {side}, step {step}")?;
+    print_grid(out, info)?;
     if let (Some(descriptor), Some((rings, radius, growth))) = (descriptor(info), info.window()) {
         writeln!(
             out,
@@ -146,9 +128,48 @@ fn print(
         writeln!(out, "partition   {partition}")?;
     }
     writeln!(out, "profile     {}", info.profile().name())?;
+    for (key, text) in info.metadata() {
+        writeln!(out, "{key:<11} {}", shown(text))?;
+    }
     passes::print_attributes(&mut *out, info, attribute_bytes)?;
     writeln!(out, "header      {} bytes\n", header_bytes(info))?;
     passes::print(out, info, present)
+}
+
+fn print_grid(out: &mut dyn Write, info: &StreamInfo) -> io::Result<()> {
+    let ([x, y, z], bits, side) = (info.origin(), info.quantization_bits(), info.side());
+    let [step_x, step_y, step_z] = info.step();
+    let steps = match info.lattice() {
+        None => format!("step {step_x}"),
+        Some(_) => format!("steps {step_x}, {step_y}, {step_z}"),
+    };
+    writeln!(out, "grid        {bits} bits, origin ({x}, {y}, {z}), side {side}, {steps}")?;
+    if let Some(lattice) = info.lattice() {
+        let ([x, y, z], [i, j, k]) = (lattice.origin, info.lattice_offset());
+        writeln!(out, "lattice     through ({x}, {y}, {z}), from point ({i}, {j}, {k}) on")?;
+    }
+    Ok(())
+}
+
+/// `null` for a cubic grid.
+fn lattice_to_json(info: &StreamInfo) -> Option<Value> {
+    let Lattice { origin, step } = info.lattice()?;
+    Some(json!({ "origin": origin, "step": step, "offset": info.lattice_offset() }))
+}
+
+fn metadata(info: &StreamInfo) -> serde_json::Map<String, Value> {
+    info.metadata().iter().map(|(key, text)| (key.clone(), text.as_str().into())).collect()
+}
+
+/// The beginning of a text, on one line.
+fn shown(text: &str) -> String {
+    const MAX_CHARS: usize = 200;
+    let clean = |c: char| if c.is_control() { ' ' } else { c };
+    let mut shown: String = text.chars().take(MAX_CHARS).map(clean).collect();
+    if text.chars().nth(MAX_CHARS).is_some() {
+        shown.push('…');
+    }
+    shown
 }
 
 fn to_json(info: &StreamInfo, attribute_bytes: &[u64], name: &str, present: u64) -> Value {
@@ -169,12 +190,14 @@ fn to_json(info: &StreamInfo, attribute_bytes: &[u64], name: &str, present: u64)
         "origin": info.origin(),
         "side": info.side(),
         "step": info.step(),
+        "lattice": lattice_to_json(info),
         "descriptor": descriptor(info),
         "rings": window.map(|w| w.0),
         "radius": window.map(|w| w.1),
         "growth": window.map(|w| w.2),
         "partition": partition(info),
         "profile": info.profile().name(),
+        "metadata": metadata(info),
         "attributes": passes::attributes_to_json(info, attribute_bytes),
         "passes": passes::to_json(info, present),
         "trailing": passes::trailing_to_json(info, present),

@@ -8,23 +8,25 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Looks whether there is a file, without opening it: a pipe can be opened once.
+/// Whether it is standard input.
+pub fn is_stdin(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Looks whether there is a file, without opening it: a pipe can be opened once. Standard input is there.
 ///
 /// # Errors
 /// If there is none, or it is a folder.
 pub fn check(path: &Path) -> Result<(), Failure> {
     let refuse = |kind, what: &str| Err(Failure::Input(io::Error::new(kind, what)));
+    if is_stdin(path) {
+        return Ok(());
+    }
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => refuse(io::ErrorKind::IsADirectory, "it is a folder"),
         Ok(_) => Ok(()),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            let is_stdin = path == Path::new("-");
-            let what = if is_stdin {
-                "a mesh is not read from standard input: give a file"
-            } else {
-                "there is no such file"
-            };
-            refuse(error.kind(), what)
+            refuse(error.kind(), "there is no such file")
         }
         Err(error) => Err(Failure::Input(error)),
     }

@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use super::ui::Ui;
-use lwc::losses::{Loss, LossKind, Losses, Stage};
+use lwc::losses::{Loss, Losses};
 use serde_json::{Value, json};
 
 /// Whether losses are refused.
@@ -27,20 +27,34 @@ impl Strictness {
 
 /// Warns of what is lost otherwise than the options say.
 pub fn warn(name: &str, losses: &Losses, ui: &Ui) {
-    for stage in Stage::ALL {
-        let plain = |loss: &&Loss| is_plain(loss) && loss.stage == stage;
-        let names: Vec<&str> = losses.unusual().filter(plain).map(|loss| loss.subject.as_str()).collect();
-        if !names.is_empty() {
-            ui.warn(name, &format!("left out: {}", names.join(", ")));
+    gathered(losses.unusual()).iter().for_each(|loss| ui.warn(name, &loss.to_string()));
+}
+
+/// One sentence for names that have kind and remedy in common.
+fn gathered<'a>(losses: impl Iterator<Item = &'a Loss>) -> Vec<Loss> {
+    let mut sentences: Vec<Loss> = Vec::new();
+    for loss in losses {
+        match sentences.iter_mut().find(|known| is_like(known, loss)) {
+            Some(known) => known.subject = format!("{}, {}", known.subject, loss.subject),
+            None => sentences.push(loss.clone()),
         }
     }
-    losses.unusual().filter(|loss| !is_plain(loss)).for_each(|loss| ui.warn(name, &loss.to_string()));
+    sentences
+}
+
+/// Whether two losses differ in what is lost only, and nothing was counted or measured.
+fn is_like(known: &Loss, loss: &Loss) -> bool {
+    let is_bare = |loss: &Loss| loss.count.is_none() && loss.largest_error.is_none();
+    let what = |loss: &'_ Loss| (loss.stage, loss.kind, loss.is_requested);
+    is_bare(known) && is_bare(loss) && what(known) == what(loss) && known.remedy == loss.remedy
 }
 
 /// One sentence on what is lost as the options say, or nothing.
 pub fn usual(losses: &Losses) -> Option<String> {
     let usual: Vec<&Loss> = losses.iter().filter(|loss| loss.is_usual()).collect();
-    (!usual.is_empty()).then(|| format!("lost: {}", joined(usual.into_iter())))
+    let plain = |loss: &Loss| loss.clone().remedy("");
+    let sentences: Vec<Loss> = gathered(usual.into_iter()).iter().map(plain).collect();
+    (!sentences.is_empty()).then(|| format!("lost: {}", joined(sentences.iter())))
 }
 
 /// One object for each loss.
@@ -60,11 +74,6 @@ pub fn to_json(losses: &Losses) -> Value {
         })
     };
     losses.iter().map(one).collect()
-}
-
-/// Whether it is a name and nothing else.
-fn is_plain(loss: &Loss) -> bool {
-    *loss == Loss::new(loss.stage, LossKind::Dropped, loss.subject.as_str())
 }
 
 fn joined<'a>(losses: impl Iterator<Item = &'a Loss>) -> String {

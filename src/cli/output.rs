@@ -84,15 +84,6 @@ pub fn say_written(destination: &Destination, what: &str, ui: &Ui) {
     ui.say(&format!("{}: {what}{size}", path.display()));
 }
 
-/// Says what a format had no place for.
-pub fn warn_left_out(destination: &Destination, report: &lwc::io::WriteReport, ui: &Ui) {
-    for (names, what) in [(&report.ignored, "not kept"), (&report.zeroed, "zeros where there was no value")] {
-        if !names.is_empty() {
-            ui.warn(&destination.name(), &format!("{what}: {}", names.join(", ")));
-        }
-    }
-}
-
 /// `12 vertices, 20 triangles`.
 pub fn size_of(mesh: &TriMesh) -> String {
     let vertices = counted(mesh.num_vertices(), "vertex", "vertices");
@@ -111,8 +102,13 @@ pub fn has_ending(path: &Path, ending: &str) -> bool {
 
 /// `model.obj.zst` → `model`, in the same folder: another ending can be appended.
 pub fn without_mesh_ending(path: &Path) -> PathBuf {
-    let is_compressed = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("zst"));
+    let is_compressed = is_compressed(path);
     if is_compressed { path.with_extension("").with_extension("") } else { path.with_extension("") }
+}
+
+/// Whether the ending is that of a compressed file.
+pub fn is_compressed(path: &Path) -> bool {
+    has_ending(path, "gz") || has_ending(path, "zst")
 }
 
 /// Appends `ending` to a path, whatever dots it has.
@@ -138,7 +134,9 @@ mod tests {
 
     #[test]
     fn names_keep_their_inner_dots() {
-        for (path, expected) in [("a/b.obj.zst", "a/b.lwc"), ("v1.2.ply", "v1.2.lwc"), ("B.STL", "B.lwc")] {
+        for (path, expected) in
+            [("a/b.obj.zst", "a/b.lwc"), ("c.ply.GZ", "c.lwc"), ("v1.2.ply", "v1.2.lwc"), ("B.STL", "B.lwc")]
+        {
             assert_eq!(with_ending(without_mesh_ending(Path::new(path)), "lwc"), Path::new(expected));
         }
     }

@@ -15,7 +15,7 @@ pub struct Args {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    Encode(super::encode::args::Encode),
+    Encode(Box<super::encode::args::Encode>),
     Decode(super::decode::Decode),
     Info(super::info::Info),
     Describe(super::describe::Describe),
@@ -44,7 +44,7 @@ mod tests {
     fn defaults_are_those_of_the_library() {
         let args = Args::try_parse_from(["lwc", "encode", "x.ply"]).unwrap();
         let Command::Encode(encode) = args.command else { panic!("not encode") };
-        assert_eq!(encode.options(), EncodeOptions::default());
+        assert_eq!(encode.options(lwc::GridChoice::Auto), EncodeOptions::default());
         let args = Args::try_parse_from(["lwc", "decode", "x.lwc"]).unwrap();
         let Command::Decode(decode) = args.command else { panic!("not decode") };
         assert_eq!(decode.limits.limits(), Limits::default());

@@ -11,6 +11,31 @@ use std::fs::File;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
+/// Bytes that hold the table of passes of most streams; twice as many are tried each time.
+const FIRST_BYTES: u64 = 1 << 14;
+
+/// What a stream says of itself, and the bytes read for that.
+///
+/// # Errors
+/// If reading fails, or the stream is damaged or ends too early.
+pub fn read_head(reader: &mut dyn Read) -> anyhow::Result<(StreamInfo, Vec<u8>)> {
+    let mut head = Vec::new();
+    let mut wanted = FIRST_BYTES;
+    loop {
+        let read = reader.take(wanted).read_to_end(&mut head).map_err(Failure::Input)?;
+        if let Some(info) = StreamInfo::read(&head)? {
+            return Ok((info, head));
+        }
+        if head.is_empty() {
+            return Err(Failure::Empty.into());
+        }
+        if (read as u64) < wanted {
+            return Err(Failure::CutTable.into());
+        }
+        wanted = head.len() as u64;
+    }
+}
+
 /// Where a stream comes from.
 pub enum StreamSource {
     Stdin,
@@ -56,6 +81,14 @@ impl StreamSource {
                 Ok(Box::new(file))
             }
         }
+    }
+
+    /// What the stream says of itself, read as far as that takes.
+    ///
+    /// # Errors
+    /// If reading fails, or the stream is damaged or ends too early.
+    pub fn read_info(&self) -> anyhow::Result<StreamInfo> {
+        Ok(read_head(&mut *self.open()?)?.0)
     }
 
     /// All bytes.

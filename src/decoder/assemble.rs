@@ -6,7 +6,7 @@ use super::forecast;
 use super::refused::Refused;
 use super::stream_info::TrailingKind;
 use crate::bitstream::chunk::kind;
-use crate::bitstream::header::Grid;
+use crate::bitstream::grid::Grid;
 use crate::entropy::range_coder::RangeDecoder;
 use crate::error::DecodeError;
 use crate::limits::Limits;

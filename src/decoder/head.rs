@@ -8,6 +8,7 @@ use super::{attributes, forecast};
 use crate::bitstream::chunk::kind;
 use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::header::{Header, Provenance};
+use crate::bitstream::metadata;
 use crate::bitstream::profile::Profile;
 use crate::bitstream::scene;
 use crate::error::DecodeError;
@@ -15,6 +16,7 @@ use crate::limits::Limits;
 use crate::mesh::{GltfMaterials, SceneTable};
 use crate::passes::attribute::Declarations;
 use crate::util::budget::Budget;
+use std::sync::Arc;
 
 /// The header chunks received so far.
 #[derive(Default)]
@@ -26,6 +28,7 @@ pub(super) struct Head {
     announced: Option<ChunkIndex>,
     scene: Option<SceneTable>,
     pub(super) materials: Option<GltfMaterials>,
+    metadata: Option<Arc<[(String, String)]>>,
     /// Until the decoder of their values takes them.
     pub(super) declarations: Option<Declarations>,
     /// Bytes of memory that all of this takes.
@@ -66,12 +69,15 @@ impl Head {
             kind::SCENE if self.scene.is_none() => {
                 self.scene = Some(self.read(source, "the scene", scene::read)?);
             }
+            kind::METADATA if self.metadata.is_none() => {
+                self.metadata = Some(self.read(source, "metadata", metadata::read)?.into());
+            }
             kind::MATERIALS if self.materials.is_none() => self.take_materials(source)?,
             kind::ANNOUNCED if self.announced.is_none() => {
                 let read = |payload: &[u8], _: &mut Budget| ChunkIndex::read(payload);
                 self.announced = Some(self.read(source, "the announced chunks", read)?);
             }
-            kind::DECLARATIONS | kind::SCENE | kind::MATERIALS | kind::ANNOUNCED => {
+            kind::DECLARATIONS | kind::SCENE | kind::MATERIALS | kind::METADATA | kind::ANNOUNCED => {
                 return Err(out_of_order(chunk));
             }
             _ => skip(chunk)?,
@@ -108,6 +114,7 @@ impl Head {
         let (passes, trailing) = passes;
         let none = Declarations::default();
         let scene = self.scene.take();
+        let metadata = self.metadata.take();
         let declared = self.declared().unwrap_or(&none);
         let info = StreamInfo {
             grid: header.grid,
@@ -121,6 +128,7 @@ impl Head {
             },
             trailing,
             scene,
+            metadata,
             work: 0,
         };
         let models = attributes::bytes_of_models(declared, info.profile.mixing());

@@ -2,7 +2,7 @@
 
 use super::assemble::Extras;
 use crate::bitstream::compensation::Compensation;
-use crate::bitstream::header::Grid;
+use crate::bitstream::grid::Grid;
 use crate::mesh::TriMesh;
 use crate::passes::compensation::Mover;
 
@@ -137,7 +137,7 @@ impl PositionUpdater {
         let Some(mover) = &self.0 else { return middle };
         let step = mesh.grid.step(mesh.quantization_bits);
         let moved = mover.moved(vertex, mesh.compensation);
-        std::array::from_fn(|axis| middle[axis] + moved[axis] * step)
+        std::array::from_fn(|axis| middle[axis] + moved[axis] * step[axis])
     }
 }
 

@@ -67,6 +67,7 @@ impl<'a> Snapshot<'a> {
         let StreamingDecoder { info, head, done, .. } = self.0;
         if *done > 0 {
             attributes.scene = info.as_ref().and_then(|info| info.scene.clone());
+            attributes.metadata = info.as_ref().and_then(|info| info.metadata.clone()).unwrap_or_default();
             attributes.gltf_materials.clone_from(&head.materials);
         }
         attributes

@@ -3,11 +3,13 @@
 use crate::bitstream::chunk;
 use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::compensation::Compensation;
-use crate::bitstream::header::{Action, Grid, Pass, Provenance};
+use crate::bitstream::grid::{Grid, Lattice, Spread};
+use crate::bitstream::header::{Action, Pass, Provenance};
 use crate::bitstream::pass_table::{self, BadTable};
 use crate::bitstream::profile::Profile;
 use crate::mesh::{ComponentType, Domain, SceneTable, Semantic};
 use crate::passes::attribute::{Coding, Declaration};
+use std::sync::Arc;
 
 /// What a stream says about itself before its first pass.
 #[derive(Clone, Debug)]
@@ -19,6 +21,7 @@ pub struct StreamInfo {
     pub(super) attributes: Vec<AttributeInfo>,
     pub(super) trailing: Vec<TrailingInfo>,
     pub(super) scene: Option<SceneTable>,
+    pub(super) metadata: Option<Arc<[(String, String)]>>,
     pub(super) work: u64,
 }
 
@@ -182,17 +185,34 @@ impl StreamInfo {
 
     /// Smallest corner of the grid, model units.
     pub fn origin(&self) -> [f64; 3] {
-        self.grid.origin
+        self.grid.origin()
     }
 
-    /// Side of a cell of the finest grid, model units.
-    pub fn step(&self) -> f64 {
+    /// Sides of a cell of the finest grid, model units: all equal unless the grid is on a [`lattice`](Self::lattice).
+    pub fn step(&self) -> [f64; 3] {
         self.grid.step(self.grid.quantization_bits)
     }
 
-    /// Side of the grid, model units: 2^quantization_bits − 1 steps.
+    /// Longest side of the grid, model units: 2^quantization_bits − 1 of the largest steps.
     pub fn side(&self) -> f64 {
-        self.grid.side
+        self.grid.side()
+    }
+
+    /// The lattice whose points the vertices are, if the grid is on one and not in a cube.
+    pub fn lattice(&self) -> Option<Lattice> {
+        match self.grid.spread {
+            Spread::Cube { .. } => None,
+            Spread::Lattice { lattice, .. } => Some(lattice),
+        }
+    }
+
+    /// The number of the point of the [`lattice`](Self::lattice) that cell (0, 0, 0) is, per axis: at most 2^51 off 0. All
+    /// 0 without a lattice.
+    pub fn lattice_offset(&self) -> [i64; 3] {
+        match self.grid.spread {
+            Spread::Cube { .. } => [0; 3],
+            Spread::Lattice { offset, .. } => offset,
+        }
     }
 
     /// Finest level.
@@ -213,6 +233,11 @@ impl StreamInfo {
     /// The scene whose meshes these are, if it is one: see [`Attributes::scene`](crate::mesh::Attributes::scene).
     pub fn scene(&self) -> Option<&SceneTable> {
         self.scene.as_ref()
+    }
+
+    /// What else is known of the whole: see [`Attributes::metadata`](crate::mesh::Attributes::metadata).
+    pub fn metadata(&self) -> &[(String, String)] {
+        self.metadata.as_deref().unwrap_or_default()
     }
 
     /// What follows the last pass, in order.

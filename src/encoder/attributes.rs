@@ -3,7 +3,7 @@
 use super::attribute_coding::{choose, key_of, must_be_exact};
 use super::options::Input;
 use super::rounding::rounding;
-use crate::bitstream::scene;
+use crate::bitstream::{metadata, scene};
 use crate::error::EncodeError;
 use crate::losses::Loss;
 use crate::mesh::surface::turns;
@@ -25,6 +25,8 @@ pub(super) struct Quantized {
     /// Payloads of the scene and the materials.
     pub(super) scene: Option<Vec<u8>>,
     pub(super) materials: Option<Vec<u8>>,
+    /// Payload of the metadata.
+    pub(super) metadata: Option<Vec<u8>>,
     /// Entries that are not finite, and so are not kept.
     pub(super) values_dropped: usize,
 }
@@ -110,6 +112,15 @@ pub(super) fn quantize(
         );
     }
     quantized.materials = attributes.gltf_materials.as_ref().map(scene::write_materials);
+    if !attributes.metadata.is_empty() {
+        let payload = metadata::write(&attributes.metadata);
+        let is_valid = metadata::read(&payload, &mut Budget::new(0, u64::MAX)).is_some();
+        let fail = || EncodeError::Attribute {
+            name: "metadata".to_owned(),
+            what: "a key is there twice".to_owned(),
+        };
+        quantized.metadata = Some(Some(payload).filter(|_| is_valid).ok_or_else(fail)?);
+    }
     let mut num_tracks = 0;
     for attribute in &attributes.list {
         let fail = |what: String| EncodeError::Attribute { name: attribute.name.clone(), what };

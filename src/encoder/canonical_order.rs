@@ -3,7 +3,7 @@
 
 use super::tie_break::Signatures;
 use super::ties::Ties;
-use crate::bitstream::header::Grid;
+use crate::bitstream::grid::Grid;
 use crate::mesh::{TriMesh, has_three_vertices};
 use crate::util::morton::morton;
 use rayon::prelude::*;
@@ -110,7 +110,7 @@ mod tests {
     /// Triangles in cells of each vertex and the order of equal cells: what the bytes depend on.
     fn ordered(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> (Vec<[i32; 3]>, Vec<[u32; 3]>) {
         let mesh = TriMesh::new(positions.to_vec(), triangles.to_vec()).unwrap();
-        let grid = Grid { quantization_bits: 4, origin: [0.0; 3], side: 15.0 };
+        let grid = Grid::cube(4, [0.0; 3], 15.0);
         let (ordered, triangles) = order(&mesh, &grid, &|| None);
         for (t, &corner) in triangles.iter().zip(&ordered.corner_source) {
             let source = mesh.triangles()[(corner / 3) as usize];

@@ -1,6 +1,8 @@
 //! Down the levels: M^L → M^0.
 
+use super::grid_error::relative;
 use super::options::{Attempt, EncodeOptions, Progress};
+use crate::bitstream::grid::Grid;
 use crate::descriptors::{self, Features};
 use crate::mesh::{Surface, TriMesh};
 use crate::simplification::hierarchy::{Descent, Settings};
@@ -22,7 +24,7 @@ pub(super) struct Hierarchy {
     pub(super) base_faces: Vec<u32>,
     /// Mean edge length in steps of the full grid, base first, then each finer level.
     pub(super) mean_edges: Vec<f64>,
-    /// Mean squared distance of the full surface from each level, in squared steps, in that order.
+    /// Mean squared distance of the full surface from each level, in squares of the largest step, in that order.
     pub(super) errors: Vec<f64>,
     pub(super) num_vertices: usize,
     pub(super) num_faces: usize,
@@ -40,20 +42,41 @@ pub(super) struct Companions {
     pub(super) features: Option<Features>,
 }
 
-/// Goes down from `surface`, whose vertices have the places `cells`. Nothing else is looked at, so that a
+/// The vertices of a surface on the grid.
+#[derive(Clone, Copy)]
+pub(super) struct Placed<'a> {
+    pub(super) cells: &'a [[i32; 3]],
+    pub(super) grid: &'a Grid,
+}
+
+impl Placed<'_> {
+    /// The shape of the surface: places in units of which the grid has about one along its longest side. Near 1, so that
+    /// squares neither overflow nor vanish.
+    fn positions(&self) -> Vec<[f64; 3]> {
+        let shares = relative(self.grid.step(self.grid.quantization_bits));
+        let place =
+            |cell: &[i32; 3]| std::array::from_fn(|a| f64::from(cell[a]) * shares[a] / self.steps_per_unit());
+        self.cells.iter().map(place).collect()
+    }
+
+    /// Of the largest steps.
+    fn steps_per_unit(&self) -> f64 {
+        f64::from(1_u32 << self.grid.quantization_bits)
+    }
+}
+
+/// Goes down from `surface`, whose vertices have the places `placed`. Nothing else is looked at, so that a
 /// decoded mesh gives the same levels.
 pub(super) fn analyse(
     surface: Surface,
-    cells: &[[i32; 3]],
+    placed: Placed,
     companions: Companions,
     options: &EncodeOptions,
     attempt: Attempt,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Hierarchy {
     let (num_vertices, num_faces) = (surface.corner_of.len(), surface.triangles.len());
-    // Near 1, so that squares neither overflow nor vanish.
-    let steps_per_unit = f64::from(1_u32 << options.quantization_bits);
-    let positions: Vec<[f64; 3]> = cells.iter().map(|c| c.map(|c| f64::from(c) / steps_per_unit)).collect();
+    let (cells, positions) = (placed.cells, placed.positions());
     let mesh = TriMesh::from_valid_parts(positions.clone(), surface.triangles.clone());
     let geometry = Geometry { grid: cells, positions: &positions };
     let Companions { stitched, seams, features } = companions;
@@ -63,7 +86,7 @@ pub(super) fn analyse(
         || Descent::new(surface, geometry, settings, stitched),
     );
     let mut descent = descent.with_mean_edge(mean_edge).with_seams(seams).with_features(features);
-    let squared_step = steps_per_unit.powi(2);
+    let squared_step = placed.steps_per_unit().powi(2);
     let mut records = Vec::new();
     let mut mean_edges = vec![descent.level().mean_edge(cells)];
     let mut errors = vec![0.0];

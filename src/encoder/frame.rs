@@ -6,7 +6,8 @@ use super::options::EncodeOptions;
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::chunk_index::ChunkIndex;
 use crate::bitstream::compensation::Compensation;
-use crate::bitstream::header::{Grid, Header, Pass, Provenance};
+use crate::bitstream::grid::Grid;
+use crate::bitstream::header::{Header, Pass, Provenance};
 use crate::bitstream::pass_table;
 
 /// Materials of at most this many bytes come before the passes: the base mesh should not have to wait for pictures.
@@ -91,6 +92,9 @@ fn write_attributes(bytes: &mut Vec<u8>, quantized: &Quantized, values: &[Vec<u8
     }
     if let Some(scene) = &quantized.scene {
         chunk::write(bytes, kind::SCENE, scene);
+    }
+    if let Some(metadata) = &quantized.metadata {
+        chunk::write(bytes, kind::METADATA, metadata);
     }
     if let Some(materials) = materials_in_front(quantized) {
         chunk::write(bytes, kind::MATERIALS, materials);

@@ -3,11 +3,14 @@
 
 use super::attributes::{self, Elements, Quantized};
 use super::canonical_order::{self, Ordered};
+use super::choose_grid;
+use super::coarsen::Placed;
+use super::grid_error::GridError;
 use super::isolated_and_degenerate::LooseElements;
 use super::options::Input;
-use super::quantize;
+use super::quantize::Bounds;
 use super::tie_break::Signatures;
-use crate::bitstream::header::Grid;
+use crate::bitstream::grid::Grid;
 use crate::descriptors::{Features, FeaturesError};
 use crate::error::EncodeError;
 use crate::mesh::repair::{RepairReport, cut};
@@ -21,6 +24,7 @@ const MOST_STITCHED: f64 = 0.25;
 /// How the vertices of the cut surface came about, and what else is kept of the mesh.
 pub(super) struct GridSurface {
     pub(super) grid: Grid,
+    pub(super) grid_error: GridError,
     pub(super) ordered: Ordered,
     /// Vertex of `ordered` for each vertex. Ascending.
     pub(super) source: Vec<u32>,
@@ -39,7 +43,7 @@ impl GridSurface {
         let Input { mesh, options, .. } = input;
         let num_usable = check_size(mesh)?;
         let mut loose = LooseElements::of(mesh, options);
-        let grid = grid_around(input, &loose)?;
+        let (grid, grid_error) = choose_grid::choose(mesh, options, &bounds(mesh, &loose), &loose.vertices)?;
         let (ordered, triangles) = order(input, &grid, &mut loose);
         let (surface, source) = cut(triangles, ordered.cells.len());
         check_count(source.len())?;
@@ -49,7 +53,12 @@ impl GridSurface {
             repeated_vertices: source.len() - ordered.cells.len(),
         };
         let cells = source.iter().map(|&v| ordered.cells[v as usize]).collect();
-        Ok((surface, Self { grid, ordered, source, cells, loose, repair }))
+        Ok((surface, Self { grid, grid_error, ordered, source, cells, loose, repair }))
+    }
+
+    /// The vertices where the grid has them.
+    pub(super) fn placed(&self) -> Placed<'_> {
+        Placed { cells: &self.cells, grid: &self.grid }
     }
 
     /// The attributes as integers, and those that the descriptor is to see.
@@ -107,11 +116,10 @@ fn check_count(num_vertices: usize) -> Result<(), EncodeError> {
     if num_vertices >= MOST_ELEMENTS { Err(EncodeError::TooLarge(num_vertices)) } else { Ok(()) }
 }
 
-/// The grid of all that is kept.
-fn grid_around(Input { mesh, options, .. }: Input, loose: &LooseElements) -> Result<Grid, EncodeError> {
+/// The box around all that is kept.
+fn bounds(mesh: &TriMesh, loose: &LooseElements) -> Bounds {
     let usable = mesh.triangles().iter().filter(|t| has_three_vertices(t));
-    let points = usable.flatten().chain(&loose.vertices).map(|&v| mesh.positions()[v as usize]);
-    quantize::grid_around(points, options.quantization_bits)
+    Bounds::of(usable.flatten().chain(&loose.vertices).map(|&v| mesh.positions()[v as usize]))
 }
 
 /// Orders the usable triangles, their vertices and the loose elements. Signatures are made where places do not tell all

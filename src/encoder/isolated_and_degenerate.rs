@@ -4,7 +4,7 @@
 use super::attributes::Elements;
 use super::options::EncodeOptions;
 use super::tie_break::Signatures;
-use crate::bitstream::header::Grid;
+use crate::bitstream::grid::Grid;
 use crate::mesh::surface::turns;
 use crate::mesh::{TriMesh, has_three_vertices};
 use crate::util::morton::morton;

@@ -4,10 +4,13 @@ mod attribute_coding;
 mod attribute_writer;
 mod attributes;
 mod canonical_order;
+mod choose_grid;
 mod coarsen;
 mod compensation;
 mod earnings;
 mod frame;
+mod grid_choice;
+mod grid_error;
 mod grid_surface;
 mod isolated_and_degenerate;
 mod losses;
@@ -34,6 +37,8 @@ use options::Input;
 use trailing::Original;
 use tries::Tries;
 
+pub use grid_choice::GridChoice;
+pub use grid_error::{GridError, Remedy};
 pub use options::{EncodeOptions, Encoded, Progress};
 
 use crate::decoder::{StreamInfo, environment};
@@ -47,7 +52,7 @@ use crate::mesh::{Attributes, Surface, TriMesh};
 /// oriented triangle back exactly. What was cut or dropped on the way is in the report.
 ///
 /// # Errors
-/// If the mesh has no usable triangle, spans more than a double can hold, or an option is out of
+/// If the mesh has no usable triangle, spans more than a double or a lattice can hold, or an option is out of
 /// range.
 pub fn encode(mesh: &TriMesh, options: &EncodeOptions) -> Result<Encoded, EncodeError> {
     encode_with_progress(mesh, options, &|_| {})
@@ -85,8 +90,10 @@ pub fn encode_with_attributes(
     let bytes = smallest_stream(surface, original, features.as_ref(), progress);
     // The encoder's own bytes always hold a header.
     let info = StreamInfo::read(&bytes).ok().flatten().ok_or(EncodeError::TooLarge(mesh.num_vertices()))?;
-    let losses = losses::beside_positions(&on_grid.repair, &quantized, options);
-    Ok(Encoded { bytes, info, repair: on_grid.repair, losses })
+    let GridSurface { repair, grid_error, .. } = on_grid;
+    let mut losses = losses::of_positions(&grid_error);
+    losses.append(losses::beside_positions(&repair, &quantized, options));
+    Ok(Encoded { bytes, info, repair, grid_error, losses })
 }
 
 /// The smallest stream of all hierarchies and schedules that the options try.
@@ -108,10 +115,11 @@ fn smallest_stream(
         let taken = if is_last { surface.take() } else { surface.clone() }.unwrap_or_default();
         let (stitched, seams, features) = (stitched.clone(), quantized.seams(), features.cloned());
         let companions = Companions { stitched, seams, features };
-        let hierarchy = coarsen::analyse(taken, &on_grid.cells, companions, options, attempt, &|now| {
+        let hierarchy = coarsen::analyse(taken, on_grid.placed(), companions, options, attempt, &|now| {
             tries.tell(i, 0, now)
         });
-        for (k, schedule) in schedule::tried(&hierarchy, options).enumerate() {
+        for (k, schedule) in schedule::tried(&hierarchy, options, on_grid.grid.quantization_bits).enumerate()
+        {
             let progress = |now: Progress| tries.tell(i, k, now);
             let bytes = write::write(&original, &points, &hierarchy, &schedule, &progress);
             if smallest.is_empty() || bytes.len() < smallest.len() {

@@ -1,5 +1,7 @@
 //! What the caller may choose, and what the encoder returns.
 
+use super::grid_choice::GridChoice;
+use super::grid_error::GridError;
 use crate::bitstream::profile::Profile;
 use crate::decoder::StreamInfo;
 use crate::descriptors::{Descriptor, FeatureChoice, Window};
@@ -23,8 +25,10 @@ pub struct EncodeOptions {
     pub growth: f64,
     /// Attributes that the descriptor uses in addition to positions, if it is pca or pca-qem. Default none.
     pub descriptor_attributes: Vec<FeatureChoice>,
-    /// Bits per coordinate, 1 to 30. Default 12.
+    /// Bits per coordinate, 1 to 30, unless [`grid`](Self::grid) is a lattice, from which they follow. Default 12.
     pub quantization_bits: u32,
+    /// Where vertices may lie. Default [`GridChoice::Auto`].
+    pub grid: GridChoice,
     /// Number of levels above the base mesh, 0 to 128; `None` goes on until the base is small. Default `None`.
     pub levels: Option<u32>,
     /// How odd vertices are chosen and removed. Default weighted error.
@@ -32,7 +36,8 @@ pub struct EncodeOptions {
     /// What the partition by weighted error aims at. Default balanced.
     pub optimize: Optimize,
     /// Grid steps to the mean edge of a level, 0.5 to 1e9, from which its quantization bits follow; `None` follows the
-    /// error of each level instead, which makes better prefixes. Default `None`.
+    /// error of each level instead, which makes better prefixes. Where the axes have steps of their own, each component of
+    /// an edge counts in the steps of its axis. Default `None`.
     pub steps_per_edge: Option<f64>,
     /// Bits of each of the two coordinates of a normal on the octahedron, 2 to 30. Default 8.
     pub normal_bits: u32,
@@ -71,6 +76,7 @@ impl Default for EncodeOptions {
             growth: 1.5,
             descriptor_attributes: Vec::new(),
             quantization_bits: 12,
+            grid: GridChoice::default(),
             levels: None,
             partition: Partition::default(),
             optimize: Optimize::default(),
@@ -134,6 +140,7 @@ impl EncodeOptions {
     }
 
     pub(super) fn check(&self) -> Result<(), EncodeError> {
+        self.grid.check()?;
         let fail = |option, value: String, allowed| Err(EncodeError::Option { option, value, allowed });
         if !(1..=30).contains(&self.quantization_bits) {
             return fail("quantization bits", self.quantization_bits.to_string(), "1 to 30");
@@ -201,6 +208,8 @@ pub struct Encoded {
     pub repair: RepairReport,
     /// What the stream does not give back.
     pub losses: Losses,
+    /// What rounding to the grid does to the mesh.
+    pub grid_error: GridError,
 }
 
 /// How far an encoder is.

@@ -15,17 +15,21 @@ pub(super) struct Schedule {
 const ROUNDING_SHARE: f64 = 0.25;
 
 /// The schedules of a hierarchy that the options try. Without a split there is one only.
-pub(super) fn tried(hierarchy: &Hierarchy, options: &EncodeOptions) -> impl Iterator<Item = Schedule> {
+pub(super) fn tried(
+    hierarchy: &Hierarchy,
+    options: &EncodeOptions,
+    quantization_bits: u32,
+) -> impl Iterator<Item = Schedule> {
     let most = if hierarchy.records.is_empty() { 1 } else { usize::MAX };
     let tried = options.steps_tried().into_iter().take(most);
-    tried.map(|steps| plan(hierarchy, options.quantization_bits, steps))
+    tried.map(move |steps| plan(hierarchy, quantization_bits, steps))
 }
 
 /// Each split comes with the bits its level needs; what is missing then follows the last split.
 /// Without a split all bits are in the base mesh.
 ///
 /// With `steps_per_edge` a level needs as many bits as make its mean edge that many grid steps long.
-/// Else it needs as many as keep the error of rounding (a twelfth of the squared step) below
+/// Else it needs as many as keep the error of rounding (a twelfth of the squared step, the largest one) below
 /// [`ROUNDING_SHARE`] of that of the level's shape.
 fn plan(hierarchy: &Hierarchy, quantization_bits: u32, steps_per_edge: Option<f64>) -> Schedule {
     let needed = |level: usize| {

@@ -168,7 +168,7 @@ impl Original<'_> {
         let middle = |i: usize| grid.position(grid.cell(at(i)), grid.quantization_bits);
         let scales = [0, 1, 2].map(|axis| {
             let number = |i: usize| at(i)[axis];
-            cheapest_scale(is_wide, vertices.len(), &number, &|i| [middle(i)[axis], half])
+            cheapest_scale(is_wide, vertices.len(), &number, &|i| [middle(i)[axis], half[axis]])
         });
         let ladders = scales.map(|scale| Ladder::new(is_wide, scale));
         let target = |i: usize| [0, 1, 2].map(|axis| (ladders[axis].key(at(i)[axis]), at(i)[axis]));

@@ -1,7 +1,8 @@
 //! What all readers do with vertices and faces once they have them.
 
+use super::polygon::{Cut, Cutter, quad_fits, recut};
 use super::{MeshFile, ReadError, ReadReport};
-use crate::mesh::{Attributes, NO_ENTRY, TriMesh};
+use crate::mesh::{Attributes, Domain, NO_ENTRY, TriMesh};
 
 /// How many different names of ignored things a report lists: a damaged text has a new one on every line.
 const MAX_IGNORED_NAMES: usize = 64;
@@ -21,6 +22,14 @@ pub(super) struct MeshBuilder {
     pub report: ReadReport,
     /// Bytes of the file, as far as they are read.
     pub num_bytes: usize,
+    /// The faces of more than three corners. They are fans until the end: vertices may follow.
+    polygons: Vec<Polygon>,
+}
+
+/// A fan among the triangles.
+struct Polygon {
+    first_triangle: u32,
+    num_corners: u32,
 }
 
 impl MeshBuilder {
@@ -43,13 +52,55 @@ impl MeshBuilder {
         Err(ReadError::TooLarge { message })
     }
 
-    /// Adds a face of any number of corners as the fan of its first one.
+    /// Adds a face of any number of corners, as the fan of its first one for now: values of its corners are in
+    /// this order, too, until [`MeshBuilder::finish`].
     pub fn push_polygon(&mut self, corners: &[u32]) {
+        let first_triangle = self.triangles.len() as u32;
         self.triangles.extend(fan(corners.len()).map(|triangle| triangle.map(|k| corners[k])));
         match corners.len() {
             0..3 => self.report.faces_skipped += 1,
             3 => {}
-            _ => self.report.polygons_triangulated += 1,
+            num_corners => {
+                self.report.polygons_triangulated += 1;
+                // What is too many for 32 bits is refused with the triangles.
+                self.polygons.push(Polygon { first_triangle, num_corners: num_corners as u32 });
+            }
+        }
+    }
+
+    /// Cuts those polygons by ears of which the fan leaves them.
+    fn cut_polygons(&mut self) {
+        let mut cutter = Cutter::default();
+        let mut corners = Vec::new();
+        for Polygon { first_triangle, num_corners } in std::mem::take(&mut self.polygons) {
+            let first = first_triangle as usize;
+            if num_corners == 4 && self.is_plain_quad(first) {
+                continue;
+            }
+            let fan = first..first + num_corners as usize - 2;
+            corners.clear();
+            corners.extend(corners_of(&self.triangles[fan.clone()]).map(|v| self.positions[v as usize]));
+            match cutter.cut(&corners) {
+                Cut::Fan => {}
+                Cut::Overlapping => self.report.polygons_overlapping += 1,
+                Cut::Ears(ears) => self.recut(3 * fan.start..3 * fan.end, &ears),
+            }
+        }
+    }
+
+    /// Whether the two triangles from `first` on are a quad that is a fan.
+    fn is_plain_quad(&self, first: usize) -> bool {
+        let [[a, b, c], [_, _, d]] = [self.triangles[first], self.triangles[first + 1]];
+        quad_fits([a, b, c, d].map(|v| &self.positions[v as usize]))
+    }
+
+    /// `corners`: those of a fan, of which these are the triangles instead.
+    fn recut(&mut self, corners: std::ops::Range<usize>, triangles: &[[u32; 3]]) {
+        recut(&mut self.triangles.as_flattened_mut()[corners.clone()], triangles);
+        for attribute in self.attributes.list.iter_mut().filter(|a| a.domain == Domain::Corner) {
+            if let Some(rows) = attribute.indices.as_mut().and_then(|rows| rows.get_mut(corners.clone())) {
+                recut(rows, triangles);
+            }
         }
     }
 
@@ -63,6 +114,10 @@ impl MeshBuilder {
     pub fn finish(mut self) -> Result<MeshFile, ReadError> {
         let num_indexed = self.attributes.list.iter().filter(|a| a.indices.is_some()).count();
         self.check_rows(num_indexed, self.positions.len().max(3 * self.triangles.len()))?;
+        let num_triangles = self.triangles.len();
+        if num_triangles <= u32::MAX as usize {
+            self.cut_polygons();
+        }
         let mesh = TriMesh::new(self.positions, self.triangles)?;
         for attribute in &mut self.attributes.list {
             let num_rows = attribute.num_entries();
@@ -79,6 +134,12 @@ impl MeshBuilder {
         }
         Ok(MeshFile { mesh, attributes: self.attributes, report: self.report })
     }
+}
+
+/// The corners of a polygon of which this is the fan.
+fn corners_of(fan: &[[u32; 3]]) -> impl Iterator<Item = u32> {
+    let first_two = fan.first().into_iter().flat_map(|triangle| [triangle[0], triangle[1]]);
+    first_two.chain(fan.iter().map(|triangle| triangle[2]))
 }
 
 /// The triangles of a polygon, as positions in its list of corners: the fan of the first corner.

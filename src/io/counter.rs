@@ -1,11 +1,10 @@
 //! How much of a file has been read.
 
-use std::fs::File;
 use std::io::{self, Read};
 
 /// Counts the bytes of a file as they are read, and tells which share of them that is.
 pub(super) struct Counter<'a> {
-    file: File,
+    file: Box<dyn Read + 'a>,
     pub num_bytes: u64,
     /// Of the whole file, if that is known.
     total: Option<u64>,
@@ -16,7 +15,7 @@ pub(super) struct Counter<'a> {
 
 impl<'a> Counter<'a> {
     /// `total`: bytes of the file. `share`: that of its bytes in the work of reading it.
-    pub fn new(file: File, total: Option<u64>, share: f64, progress: &'a dyn Fn(f64)) -> Self {
+    pub fn new(file: Box<dyn Read + 'a>, total: Option<u64>, share: f64, progress: &'a dyn Fn(f64)) -> Self {
         Self { file, num_bytes: 0, total, progress, share }
     }
 }

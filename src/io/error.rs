@@ -36,8 +36,11 @@ pub enum ReadError {
     /// The zstd stream of a `.zst` file is damaged or cut short.
     #[error("cannot decompress: {0}")]
     Zstd(#[source] io::Error),
+    /// The gzip stream of a `.gz` file is damaged or cut short.
+    #[error("cannot decompress: {0}")]
+    Gzip(#[source] io::Error),
     /// The ending of the file's name is not that of a format we know.
-    #[error("unknown file ending; known are {}, each also with .zst", known_endings(|_| true))]
+    #[error("unknown file ending; known are {}, each also with .gz or .zst", known_endings(|_| true))]
     UnknownEnding,
     /// The file breaks the rules of its format, ends early, or holds numbers no mesh can have.
     #[error("{place}: {message}")]
@@ -61,7 +64,7 @@ pub enum ReadError {
         /// Which limit.
         message: String,
     },
-    /// A `.zst` file unpacks to more than a file of its size may (see [`super::ReadOptions`]).
+    /// A `.gz` or `.zst` file unpacks to more than a file of its size may (see [`super::ReadOptions`]).
     #[error("too large: {packed} bytes unpack to more than {most}, which no mesh does")]
     Ratio {
         /// Bytes of the file that were read.
@@ -92,7 +95,10 @@ pub enum WriteError {
     #[error(transparent)]
     Io(#[from] io::Error),
     /// The ending of the file's name is not that of a format we know.
-    #[error("unknown file ending; known are {}, each also with .zst", known_endings(Format::is_written))]
+    #[error(
+        "unknown file ending; known are {}, each also with .gz or .zst",
+        known_endings(Format::is_written)
+    )]
     UnknownEnding,
     /// The format cannot hold this mesh.
     #[error("{message}")]

@@ -73,10 +73,15 @@ impl Format {
         !matches!(self, Self::Obj | Self::Ply | Self::Stl)
     }
 
-    /// The format that the ending of `path` names, in any case; a further `.zst` is looked past.
+    /// The format that the ending of `path` names, in any case; a further `.gz` or `.zst` is looked past.
     /// `None` if the ending is none of ours.
     pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
         format_and_compression(path.as_ref()).map(|(format, _)| format)
+    }
+
+    /// The format of files with this ending, without the dot and in small letters.
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|format| format.extension() == extension)
     }
 
     /// The usual ending of such a file, without the dot.
@@ -97,12 +102,38 @@ impl Format {
     }
 }
 
-/// Splits `model.ply.zst` into (PLY, compressed).
-pub(super) fn format_and_compression(path: &Path) -> Option<(Format, bool)> {
+/// How the bytes of a file are packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Compression {
+    Gzip,
+    Zstd,
+}
+
+impl Compression {
+    const ALL: [Self; 2] = [Self::Gzip, Self::Zstd];
+
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Gzip => "gz",
+            Self::Zstd => "zst",
+        }
+    }
+
+    /// What the first bytes of a file say.
+    pub fn from_head(head: &[u8]) -> Option<Self> {
+        match head {
+            [0x1f, 0x8b, 8, ..] => Some(Self::Gzip),
+            [0x28, 0xb5, 0x2f, 0xfd, ..] => Some(Self::Zstd),
+            _ => None,
+        }
+    }
+}
+
+/// Splits `model.ply.zst` into PLY and how it is compressed.
+pub(super) fn format_and_compression(path: &Path) -> Option<(Format, Option<Compression>)> {
     let ending = |p: &Path| Some(p.extension()?.to_str()?.to_ascii_lowercase());
     let last = ending(path)?;
-    let is_compressed = last == "zst";
-    let named = if is_compressed { ending(path.file_stem()?.as_ref())? } else { last };
-    let format = *Format::ALL.iter().find(|f| f.extension() == named)?;
-    Some((format, is_compressed))
+    let compression = Compression::ALL.into_iter().find(|compression| compression.extension() == last);
+    let named = if compression.is_some() { ending(path.file_stem()?.as_ref())? } else { last };
+    Some((Format::from_extension(&named)?, compression))
 }

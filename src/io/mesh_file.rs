@@ -1,4 +1,4 @@
-//! A mesh that was in a file, and what reading and writing leave out.
+//! A mesh that was in a file, and what reading leaves out.
 
 use crate::mesh::{Attributes, TriMesh};
 
@@ -18,8 +18,11 @@ pub struct MeshFile {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ReadReport {
-    /// Faces of four or more corners that were cut into the fan of their first corner.
+    /// Faces of four or more corners that were cut into triangles.
     pub polygons_triangulated: usize,
+    /// Of these, the ones whose triangles overlap: they cross themselves, or have thousands of corners and are not
+    /// convex. They were cut into the fan of their first corner.
+    pub polygons_overlapping: usize,
     /// Faces of fewer than three corners, left out.
     pub faces_skipped: usize,
     /// STL and glTF: corners or vertices that were joined with an earlier one at exactly the same place.
@@ -33,14 +36,4 @@ pub struct ReadReport {
     /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`), or a few
     /// words where it has no name (`2 bytes after the last triangle`).
     pub ignored: Vec<String>,
-}
-
-/// What a writer left out because the format has no place for it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct WriteReport {
-    /// Names of attributes that were left out.
-    pub ignored: Vec<String>,
-    /// Names of attributes that do not have a value everywhere, in a format that must: zeros were written.
-    pub zeroed: Vec<String>,
 }

@@ -1,12 +1,12 @@
 //! Mesh files: OBJ, PLY, STL, glTF (feature `gltf`) and terrain in LAS and LAZ (feature `las`), each also
-//! compressed with zstd (`.zst`).
+//! compressed with zstd (`.zst`) or gzip (`.gz`).
 //!
 //! The file formats stay at the edge of the crate: a file becomes a [`TriMesh`](crate::TriMesh), its
 //! [`Attributes`](crate::mesh::Attributes) and a
 //! [`ReadReport`], these become a file, and nothing else knows that files exist.
 //!
 //! Input is not trusted. No input makes a reader panic, and counts declared in a file never decide how much
-//! is allocated: memory grows as the data that fills it is found, to a small multiple of the file's size. A `.zst` file
+//! is allocated: memory grows as the data that fills it is found, to a small multiple of the file's size. A `.zst` or `.gz` file
 //! that unpacks out of all proportion is refused ([`ReadOptions`]), and OBJ, PLY and STL are unpacked in pieces.
 //!
 //! ```no_run
@@ -17,7 +17,13 @@
 //! ```
 
 mod atomic;
+// Without glTF there is no place for what a model names.
+#[cfg_attr(not(feature = "gltf"), allow(dead_code))]
+mod beside;
 mod builder;
+#[cfg(feature = "gltf")]
+mod common_type;
+mod convert;
 mod counter;
 mod error;
 mod foreign;
@@ -26,9 +32,13 @@ mod format;
 mod gltf;
 #[cfg(feature = "las")]
 mod las;
+#[cfg(feature = "gltf")]
+mod materials;
 mod mesh_file;
 mod obj;
+mod plan;
 mod ply;
+mod polygon;
 mod read;
 mod read_losses;
 #[cfg(feature = "gltf")]
@@ -36,9 +46,9 @@ mod scene;
 mod source;
 mod stl;
 mod text;
-mod texture;
 mod unpack;
 mod write;
+mod write_options;
 
 #[cfg(feature = "gltf")]
 pub use crate::mesh::Instance;
@@ -47,7 +57,7 @@ pub use error::{Place, ReadError, WriteError};
 pub use format::Format;
 #[cfg(feature = "las")]
 pub use las::TerrainOptions;
-pub use mesh_file::{MeshFile, ReadReport, WriteReport};
+pub use mesh_file::{MeshFile, ReadReport};
 #[cfg(feature = "gltf")]
 pub use read::read_scene;
 pub use read::{read, read_bytes};
@@ -59,3 +69,4 @@ pub use unpack::{MAX_FILE_BYTES, ReadOptions};
 pub use write::{write, write_ply_coloured, write_to, write_with_attributes, write_with_attributes_to};
 #[cfg(feature = "gltf")]
 pub use write::{write_scene, write_scene_to};
+pub use write_options::{ColorSpace, ColorType, PositionType, STEP_SHARE, UpAxis, WriteOptions};

@@ -1,5 +1,6 @@
 //! Meshes from files of any format.
 
+use super::beside::Folder;
 use super::error::ReadError;
 use super::foreign;
 use super::format::Format;
@@ -13,6 +14,7 @@ use super::scene::Scene;
 use super::source::Source;
 use super::unpack::ReadOptions;
 use super::{obj, ply, stl};
+use std::io::Read;
 use std::path::Path;
 
 /// Reads a mesh file; the ending of `path` says which format (see [`Format::from_path`]).
@@ -68,13 +70,25 @@ impl ReadOptions {
     ) -> Result<MeshFile, ReadError> {
         let path = path.as_ref();
         let (source, format) = self.open(path, progress)?;
-        let file = match format {
-            #[cfg(feature = "gltf")]
-            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent())?.merge()?,
-            _ => read_source(source, format)?,
-        };
+        let file = self.mesh(source, format, &mut Folder::of(path, self.textures))?;
         progress(1.0);
         Ok(file)
+    }
+
+    /// Reads a mesh from bytes that are in no file, such as those of standard input, packed with gzip or zstd if
+    /// they look so. Nothing else is read: glTF must have its buffers inside.
+    ///
+    /// # Errors
+    /// As [`read()`].
+    pub fn read_from(&self, reader: impl Read, format: Format) -> Result<MeshFile, ReadError> {
+        self.mesh(self.open_reader(reader, &|_| ())?, format, &mut Folder::none(self.textures))
+    }
+
+    fn mesh(&self, source: Source, format: Format, folder: &mut Folder) -> Result<MeshFile, ReadError> {
+        #[cfg(feature = "gltf")]
+        return self.scene(source, format, folder)?.merge();
+        #[cfg(not(feature = "gltf"))]
+        Ok(read_source(source, format, folder)?.0)
     }
 
     /// As [`read_scene()`].
@@ -98,11 +112,35 @@ impl ReadOptions {
     ) -> Result<Scene, ReadError> {
         let path = path.as_ref();
         let (source, format) = self.open(path, progress)?;
-        let scene = match format {
-            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, path.parent())?,
-            _ => read_source(source, format)?.into(),
-        };
+        let scene = self.scene(source, format, &mut Folder::of(path, self.textures))?;
         progress(1.0);
+        Ok(scene)
+    }
+
+    /// As [`ReadOptions::read_from`], for several meshes.
+    ///
+    /// # Errors
+    /// As [`read()`].
+    #[cfg(feature = "gltf")]
+    pub fn read_scene_from(&self, reader: impl Read, format: Format) -> Result<Scene, ReadError> {
+        self.scene(self.open_reader(reader, &|_| ())?, format, &mut Folder::none(self.textures))
+    }
+
+    #[cfg(feature = "gltf")]
+    fn scene(&self, source: Source, format: Format, folder: &mut Folder) -> Result<Scene, ReadError> {
+        let mut scene = match format {
+            Format::Glb | Format::Gltf => gltf::read(&source.into_bytes()?, folder)?,
+            _ => {
+                let (file, num_bytes) = read_source(source, format, folder)?;
+                Scene { num_bytes, ..file.into() }
+            }
+        };
+        if !self.textures
+            && let Some(materials) = &mut scene.gltf_materials
+            && gltf::strip_textures(materials)
+        {
+            scene.report.ignore("textures");
+        }
         Ok(scene)
     }
 
@@ -131,12 +169,36 @@ impl ReadOptions {
         progress: &dyn Fn(f64),
     ) -> Result<MeshFile, ReadError> {
         let (source, format) = self.open(path.as_ref(), progress)?;
-        let file = match format {
-            Format::Las | Format::Laz => las::read(&source.into_bytes()?, options)?,
-            _ => return Err(ReadError::UnknownEnding),
-        };
+        let file = self.terrain(source, format, options)?;
         progress(1.0);
         Ok(file)
+    }
+
+    /// As [`ReadOptions::read_from`], for point clouds.
+    ///
+    /// # Errors
+    /// As [`read_terrain()`].
+    #[cfg(feature = "las")]
+    pub fn read_terrain_from(
+        &self,
+        reader: impl Read,
+        format: Format,
+        options: &TerrainOptions,
+    ) -> Result<MeshFile, ReadError> {
+        self.terrain(self.open_reader(reader, &|_| ())?, format, options)
+    }
+
+    #[cfg(feature = "las")]
+    fn terrain(
+        &self,
+        source: Source,
+        format: Format,
+        options: &TerrainOptions,
+    ) -> Result<MeshFile, ReadError> {
+        match format {
+            Format::Las | Format::Laz => las::read(&source.into_bytes()?, options),
+            _ => Err(ReadError::UnknownEnding),
+        }
     }
 }
 
@@ -156,25 +218,32 @@ pub fn read_terrain_bytes(bytes: &[u8], options: &TerrainOptions) -> Result<Mesh
 /// As [`read`].
 pub fn read_bytes(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
     foreign::check(&bytes[..bytes.len().min(foreign::HEAD_BYTES)])?;
-    match format {
-        #[cfg(feature = "gltf")]
-        Format::Glb | Format::Gltf => gltf::read(bytes, None)?.merge(),
-        #[cfg(feature = "las")]
-        Format::Las | Format::Laz => las::read(bytes, &TerrainOptions::default()),
-        _ => read_source(Source::of_bytes(bytes), format),
-    }
+    ReadOptions::default().mesh(Source::of_bytes(bytes), format, &mut Folder::none(true))
 }
 
-/// Reads what need not be in memory as a whole; all else is.
-fn read_source(mut source: Source, format: Format) -> Result<MeshFile, ReadError> {
+/// Reads what is no scene; also says how many bytes that is. OBJ, PLY and STL need not be in memory as a whole.
+fn read_source(
+    mut source: Source,
+    format: Format,
+    folder: &mut Folder,
+) -> Result<(MeshFile, usize), ReadError> {
     let found = match format {
-        Format::Obj => obj::read(&mut source),
-        Format::Ply => ply::read(&mut source),
+        Format::Obj => obj::read(&mut source, folder),
+        Format::Ply => ply::read(&mut source, folder),
         Format::Stl => stl::read(&mut source),
-        #[cfg(any(feature = "gltf", feature = "las"))]
-        _ => return read_bytes(&source.into_bytes()?, format),
+        #[cfg(feature = "gltf")]
+        Format::Glb | Format::Gltf => {
+            let bytes = source.into_bytes()?;
+            return Ok((gltf::read(&bytes, folder)?.merge()?, bytes.len()));
+        }
+        #[cfg(feature = "las")]
+        Format::Las | Format::Laz => {
+            let bytes = source.into_bytes()?;
+            return Ok((las::read(&bytes, &TerrainOptions::default())?, bytes.len()));
+        }
     };
+    let num_bytes = source.offset();
     // A fault of the disk is not one of the mesh.
     source.finish()?;
-    found
+    Ok((found?, num_bytes))
 }

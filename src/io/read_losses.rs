@@ -13,6 +13,7 @@ impl ReadReport {
             }
         };
         count(LossKind::PolygonsTriangulated, "", self.polygons_triangulated);
+        count(LossKind::PolygonsTriangulated, "that overlap", self.polygons_overlapping);
         count(LossKind::Dropped, "faces of fewer than three corners", self.faces_skipped);
         count(LossKind::Dropped, "points flagged as withheld", self.points_withheld);
         count(LossKind::Dropped, "points above others, or not wanted", self.points_left_out);
@@ -35,15 +36,17 @@ mod tests {
         assert!(ReadReport::default().losses().is_empty());
         let report = ReadReport {
             polygons_triangulated: 1,
+            polygons_overlapping: 1,
             faces_skipped: 2,
             corners_welded: 3,
             points_left_out: 4,
             points_withheld: 5,
             ignored: vec!["l".into(), "p".into()],
         };
-        assert_eq!(report.losses().len(), 7);
+        assert_eq!(report.losses().len(), 8);
         let sentence = report.losses().to_string();
         assert!(sentence.contains("left out: faces of fewer than three corners (2)"), "{sentence}");
         assert!(sentence.contains("left out: p"), "{sentence}");
+        assert!(sentence.contains("1 polygon cut into triangles that overlap"), "{sentence}");
     }
 }

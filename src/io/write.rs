@@ -1,23 +1,19 @@
 //! Meshes into files of any format.
 
 use super::atomic::write_atomic;
-#[cfg(feature = "gltf")]
-use super::error::ReadError;
 use super::error::WriteError;
-use super::format::{Format, format_and_compression};
-#[cfg(feature = "gltf")]
-use super::gltf;
-#[cfg(feature = "gltf")]
-use super::mesh_file::MeshFile;
-use super::mesh_file::WriteReport;
+use super::format::{Compression, Format, format_and_compression};
+use super::plan::Plan;
 #[cfg(feature = "gltf")]
 use super::scene::Scene;
-use super::{obj, ply, stl};
+use super::write_options::{ColorType, WriteOptions};
+use crate::losses::Losses;
 use crate::mesh::{Attribute, Attributes, Domain, Semantic, TriMesh, Values};
+use flate2::write::GzEncoder;
 use std::io::Write;
 use std::path::Path;
 
-/// Writes a mesh file; the ending of `path` says which format, a further `.zst` compresses it.
+/// Writes a mesh file; the ending of `path` says which format, a further `.gz` or `.zst` compresses it.
 ///
 /// The file appears complete or not at all (see [`write_atomic`]).
 ///
@@ -27,7 +23,7 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
     write_with_attributes(path, mesh, &Attributes::default()).map(drop)
 }
 
-/// As [`write()`], with those of the attributes that the format can hold.
+/// As [`write()`], with those of the attributes that the format can hold. Gives what is lost.
 ///
 /// # Errors
 /// As [`write()`], and if an attribute does not fit the mesh.
@@ -35,29 +31,8 @@ pub fn write_with_attributes(
     path: impl AsRef<Path>,
     mesh: &TriMesh,
     attributes: &Attributes,
-) -> Result<WriteReport, WriteError> {
-    write_file(path.as_ref(), |out, format| write_with_attributes_to(out, mesh, attributes, format))
-}
-
-/// Writes a file by its ending, complete or not at all.
-fn write_file(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write, Format) -> Result<WriteReport, WriteError>,
-) -> Result<WriteReport, WriteError> {
-    let known = format_and_compression(path).filter(|(format, _)| format.is_written());
-    let (format, is_compressed) = known.ok_or(WriteError::UnknownEnding)?;
-    let mut report = WriteReport::default();
-    write_atomic(path, |out| {
-        if is_compressed {
-            let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
-            report = write(&mut compressor, format)?;
-            compressor.finish()?;
-        } else {
-            report = write(out, format)?;
-        }
-        Ok::<(), WriteError>(())
-    })?;
-    Ok(report)
+) -> Result<Losses, WriteError> {
+    WriteOptions::new().write(path, mesh, attributes)
 }
 
 /// Writes the meshes of a scene in their places, as glTF; in other formats, merged (see [`Scene::merge`]).
@@ -65,8 +40,8 @@ fn write_file(
 /// # Errors
 /// As [`write_with_attributes`], and if the merged mesh is too large.
 #[cfg(feature = "gltf")]
-pub fn write_scene(path: impl AsRef<Path>, scene: &Scene) -> Result<WriteReport, WriteError> {
-    write_file(path.as_ref(), |out, format| write_scene_to(out, scene, format))
+pub fn write_scene(path: impl AsRef<Path>, scene: &Scene) -> Result<Losses, WriteError> {
+    WriteOptions::new().write_scene(path, scene)
 }
 
 /// As [`write_scene`], uncompressed.
@@ -74,16 +49,8 @@ pub fn write_scene(path: impl AsRef<Path>, scene: &Scene) -> Result<WriteReport,
 /// # Errors
 /// As [`write_scene`].
 #[cfg(feature = "gltf")]
-pub fn write_scene_to(mut out: impl Write, scene: &Scene, format: Format) -> Result<WriteReport, WriteError> {
-    match format {
-        Format::Glb => gltf::write_scene(&mut out, scene, gltf::Container::Glb),
-        Format::Gltf => gltf::write_scene(&mut out, scene, gltf::Container::Text),
-        _ => {
-            let too_large = |error: ReadError| WriteError::Unrepresentable { message: error.to_string() };
-            let MeshFile { mesh, attributes, .. } = scene.clone().merge().map_err(too_large)?;
-            write_with_attributes_to(out, &mesh, &attributes, format)
-        }
-    }
+pub fn write_scene_to(out: impl Write, scene: &Scene, format: Format) -> Result<Losses, WriteError> {
+    WriteOptions::new().write_scene_to(out, scene, format)
 }
 
 /// Writes `mesh` in `format`, uncompressed. Writes are small: pass a buffered writer.
@@ -91,7 +58,7 @@ pub fn write_scene_to(mut out: impl Write, scene: &Scene, format: Format) -> Res
 /// - OBJ: shortest decimal numbers that read back as the same float64.
 /// - PLY: binary little-endian; `float` if every coordinate is a float32, else `double`.
 /// - STL: binary; coordinates are rounded to float32 and vertices are no longer shared.
-/// - glTF: coordinates are rounded to float32.
+/// - glTF: coordinates are rounded to float32, around an origin of their own where they are large.
 ///
 /// # Errors
 /// If `out` fails, or the format cannot hold the mesh.
@@ -99,51 +66,29 @@ pub fn write_to(out: impl Write, mesh: &TriMesh, format: Format) -> Result<(), W
     write_with_attributes_to(out, mesh, &Attributes::default(), format).map(drop)
 }
 
-/// As [`write_to`], with those of the attributes that the format can hold.
+/// As [`write_to`], with those of the attributes that the format can hold. Gives what is lost. [`WriteOptions`] does the
+/// same in other ways.
 ///
 /// - OBJ: normals, texture coordinates and a colour per vertex, one set each; names of materials, groups and
 ///   objects.
-/// - PLY: whatever belongs to vertices and faces and is no name, in its type; attributes of corners if they
-///   have no seam, and one set of texture coordinates if they have.
+/// - PLY: whatever belongs to vertices and faces and is no name, in its type; colours as `uchar`, normals and texture
+///   coordinates as `float`; attributes of corners if they have no seam, and one set of texture coordinates if they have.
 /// - STL: nothing.
 /// - glTF: normals, made unit vectors; texture coordinates, colours and what else vertices and corners have, in
 ///   its type if glTF has it there, else as float32; names of materials. Vertices are split at seams.
 ///
+/// Colours are turned from sRGB to linear ones where they go to glTF, and back. Where a format must have a value and there
+/// is none, colours are white, normals those of the surface, and other numbers 0.
+///
 /// # Errors
 /// As [`write_to`], and if an attribute does not fit the mesh.
 pub fn write_with_attributes_to(
-    mut out: impl Write,
+    out: impl Write,
     mesh: &TriMesh,
     attributes: &Attributes,
     format: Format,
-) -> Result<WriteReport, WriteError> {
-    for attribute in &attributes.list {
-        let misfit = |error| format!("attribute {}: {error}", attribute.name);
-        let misfit = |error| WriteError::Unrepresentable { message: misfit(error) };
-        attribute.validate(mesh).map_err(misfit)?;
-    }
-    let mut report = match format {
-        Format::Obj => obj::write(&mut out, mesh, attributes)?,
-        Format::Ply => ply::write(&mut out, mesh, attributes)?,
-        Format::Stl => {
-            stl::write(&mut out, mesh)?;
-            let ignored = attributes.list.iter().map(|attribute| attribute.name.clone()).collect();
-            WriteReport { ignored, ..WriteReport::default() }
-        }
-        #[cfg(feature = "gltf")]
-        Format::Glb => return gltf::write(&mut out, mesh, attributes, gltf::Container::Glb),
-        #[cfg(feature = "gltf")]
-        Format::Gltf => return gltf::write(&mut out, mesh, attributes, gltf::Container::Text),
-        #[cfg(feature = "las")]
-        Format::Las | Format::Laz => {
-            let message = "point clouds are read and not written".to_owned();
-            return Err(WriteError::Unrepresentable { message });
-        }
-    };
-    if attributes.gltf_materials.is_some() {
-        report.ignored.push("materials except their names".to_owned());
-    }
-    Ok(report)
+) -> Result<Losses, WriteError> {
+    WriteOptions::new().write_to(out, mesh, attributes, format)
 }
 
 /// Writes `mesh` as PLY with a colour per vertex (properties `red`, `green` and `blue`), else as
@@ -159,5 +104,118 @@ pub fn write_ply_coloured(out: impl Write, mesh: &TriMesh, colours: &[[u8; 3]]) 
     let values = Values::U8(colours.as_flattened().to_vec());
     let colour = Attribute::new("red green blue", Semantic::Color(0), Domain::Vertex, 3, values);
     let attributes = Attributes { list: vec![colour], ..Attributes::default() };
-    write_with_attributes_to(out, mesh, &attributes, Format::Ply).map(drop)
+    let options = WriteOptions::new().color_type(ColorType::Uchar);
+    options.write_to(out, mesh, &attributes, Format::Ply).map(drop)
+}
+
+impl WriteOptions {
+    /// Writes a mesh file, as [`write_with_attributes`]. Gives what is lost.
+    ///
+    /// # Errors
+    /// As [`write_with_attributes`].
+    pub fn write(
+        &self,
+        path: impl AsRef<Path>,
+        mesh: &TriMesh,
+        attributes: &Attributes,
+    ) -> Result<Losses, WriteError> {
+        write_file(path.as_ref(), |format| Plan::new(mesh, attributes, format, self))
+    }
+
+    /// Writes a mesh, as [`write_with_attributes_to`]. Gives what is lost.
+    ///
+    /// # Errors
+    /// As [`write_with_attributes_to`].
+    pub fn write_to(
+        &self,
+        mut out: impl Write,
+        mesh: &TriMesh,
+        attributes: &Attributes,
+        format: Format,
+    ) -> Result<Losses, WriteError> {
+        Plan::new(mesh, attributes, format, self)?.write(&mut out)
+    }
+
+    /// What [`WriteOptions::write`] would lose. Nothing is written.
+    ///
+    /// # Errors
+    /// If the format cannot hold the mesh, or an attribute does not fit it.
+    pub fn losses_of(
+        &self,
+        mesh: &TriMesh,
+        attributes: &Attributes,
+        format: Format,
+    ) -> Result<Losses, WriteError> {
+        Ok(Plan::new(mesh, attributes, format, self)?.losses)
+    }
+
+    /// Writes the file of a scene, as [`write_scene`]. Gives what is lost.
+    ///
+    /// # Errors
+    /// As [`write_scene`].
+    #[cfg(feature = "gltf")]
+    pub fn write_scene(&self, path: impl AsRef<Path>, scene: &Scene) -> Result<Losses, WriteError> {
+        let path = path.as_ref();
+        let merged = Plan::merged(scene, written_format(path)?.0)?;
+        write_file(path, |format| Plan::of_scene(scene, merged.as_ref(), format, self))
+    }
+
+    /// Writes a scene, as [`write_scene_to`]. Gives what is lost.
+    ///
+    /// # Errors
+    /// As [`write_scene_to`].
+    #[cfg(feature = "gltf")]
+    pub fn write_scene_to(
+        &self,
+        mut out: impl Write,
+        scene: &Scene,
+        format: Format,
+    ) -> Result<Losses, WriteError> {
+        let merged = Plan::merged(scene, format)?;
+        Plan::of_scene(scene, merged.as_ref(), format, self)?.write(&mut out)
+    }
+
+    /// What [`WriteOptions::write_scene`] would lose. Nothing is written.
+    ///
+    /// # Errors
+    /// If the format cannot hold the scene.
+    #[cfg(feature = "gltf")]
+    pub fn losses_of_scene(&self, scene: &Scene, format: Format) -> Result<Losses, WriteError> {
+        let merged = Plan::merged(scene, format)?;
+        Ok(Plan::of_scene(scene, merged.as_ref(), format, self)?.losses)
+    }
+}
+
+/// The format that the ending of a file says, and whether it is compressed.
+fn written_format(path: &Path) -> Result<(Format, Option<Compression>), WriteError> {
+    format_and_compression(path).filter(|(format, _)| format.is_written()).ok_or(WriteError::UnknownEnding)
+}
+
+/// Writes a file by its ending, complete or not at all.
+fn write_file<'a>(
+    path: &Path,
+    plan: impl FnOnce(Format) -> Result<Plan<'a>, WriteError>,
+) -> Result<Losses, WriteError> {
+    let (format, compression) = written_format(path)?;
+    let plan = plan(format)?;
+    let mut losses = Losses::default();
+    write_atomic(path, |out| {
+        losses = match compression {
+            Some(Compression::Zstd) => {
+                let mut compressor = zstd::Encoder::new(out, zstd::DEFAULT_COMPRESSION_LEVEL)?;
+                let losses = plan.write(&mut compressor)?;
+                compressor.finish()?;
+                losses
+            }
+            Some(Compression::Gzip) => {
+                let mut compressor = GzEncoder::new(out, flate2::Compression::default());
+                let losses = plan.write(&mut compressor)?;
+                compressor.finish()?;
+                losses
+            }
+            None => plan.write(&mut &mut *out)?,
+        };
+        Ok::<(), WriteError>(())
+    })?;
+    Ok(losses)
 }

@@ -172,6 +172,22 @@ impl Loss {
         }
     }
 
+    /// Whether nobody needs a warning: it is what the options ask for, or of a [kind](LossKind::is_usual) that is usual. So
+    /// are some triangles that collapse or turn, where no remedy says that they are many. Positions that a file format rounds
+    /// by more than a hundredth of an edge are not.
+    pub fn is_usual(&self) -> bool {
+        /// In lengths of edges.
+        const MOST: f64 = 0.01;
+        self.is_requested
+            || match self.kind {
+                LossKind::TrianglesCollapsed | LossKind::TrianglesTurned => self.remedy.is_empty(),
+                LossKind::PositionsRounded if self.stage == Stage::Writing => {
+                    self.largest_error_in_edges.is_none_or(|edges| edges <= MOST)
+                }
+                kind => kind.is_usual(),
+            }
+    }
+
     /// With a count of what is concerned.
     #[must_use]
     pub fn count(self, count: usize) -> Self {
@@ -200,11 +216,6 @@ impl Loss {
     #[must_use]
     pub fn requested(self) -> Self {
         Self { is_requested: true, ..self }
-    }
-
-    /// Whether it is what the options ask for, or of a [kind](LossKind::is_usual) that is usual.
-    pub fn is_usual(&self) -> bool {
-        self.is_requested || self.kind.is_usual()
     }
 
     /// With what to do about it.
@@ -282,6 +293,13 @@ mod tests {
         assert_eq!(losses.len(), 2);
         losses.append([loss(), Loss::new(Stage::Writing, LossKind::Reordered, "")].into_iter().collect());
         assert_eq!((losses.len(), losses.unusual().count()), (3, 2));
+    }
+
+    #[test]
+    fn a_file_that_moves_vertices_far_is_not_usual() {
+        let rounded = |stage, edges| Loss::new(stage, LossKind::PositionsRounded, "").in_edges(edges);
+        assert!(rounded(Stage::Writing, 0.001).is_usual() && rounded(Stage::Encoding, 0.1).is_usual());
+        assert!(!rounded(Stage::Writing, 0.1).is_usual());
     }
 
     #[test]

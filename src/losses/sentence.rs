@@ -45,11 +45,16 @@ impl Loss {
             LossKind::ValuesFilled => {
                 format!("{subject}: {} made up where there was none", self.counted("value"))
             }
+            LossKind::NamesChanged if self.count.is_none() => format!("written by another name: {subject}"),
             LossKind::NamesChanged => format!("{subject}: {} changed", self.counted("name")),
-            LossKind::PolygonsTriangulated => format!("{} cut into triangles", self.counted("polygon")),
+            LossKind::PolygonsTriangulated => {
+                format!("{} cut into triangles{}", self.counted("polygon"), behind(subject))
+            }
             LossKind::VerticesJoined => format!("{} joined with others", self.counted("vertex")),
             LossKind::VerticesSplit => format!("{} repeated", self.counted("vertex")),
-            LossKind::Reordered => "vertices and triangles in another order".to_owned(),
+            LossKind::Reordered => {
+                format!("vertices and triangles in another order{}", in_parentheses(subject))
+            }
             LossKind::Coarser => format!("coarser than the whole stream{}", in_parentheses(subject)),
         }
     }
@@ -77,6 +82,10 @@ impl Loss {
 
 fn to(subject: &str) -> String {
     if subject.is_empty() { String::new() } else { format!(" to {subject}") }
+}
+
+fn behind(subject: &str) -> String {
+    if subject.is_empty() { String::new() } else { format!(" {subject}") }
 }
 
 fn in_parentheses(subject: &str) -> String {
@@ -120,6 +129,7 @@ mod tests {
                 "positions rounded to float32, by at most 0.25",
             ),
             (loss(LossKind::ValuesRounded, "vn").at_most(12.34), "vn: values rounded, by at most 12"),
+            (loss(LossKind::NamesChanged, "heat (_heat)"), "written by another name: heat (_heat)"),
             (loss(LossKind::Coarser, "level 3 of 9"), "coarser than the whole stream (level 3 of 9)"),
         ] {
             assert_eq!(loss.to_string(), sentence);

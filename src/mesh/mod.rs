@@ -7,6 +7,8 @@ pub(crate) mod ears;
 #[cfg(feature = "encoder")]
 pub(crate) mod repair;
 mod scene;
+#[cfg(any(feature = "io", feature = "render"))]
+pub(crate) mod srgb;
 pub(crate) mod surface;
 mod tri_mesh;
 #[cfg(any(feature = "encoder", feature = "metrics"))]

@@ -2,7 +2,7 @@
 
 use super::float_values::{Ladder, Scale};
 use super::{EXHAUSTED, Malformed};
-use crate::bitstream::header::Grid;
+use crate::bitstream::grid::Grid;
 use crate::entropy::context_mixer::PlainBits;
 use crate::entropy::numbers::Numbers;
 use crate::entropy::range_coder::BitCoder;
@@ -190,7 +190,7 @@ pub(crate) fn code<B: BitCoder>(
         let mut position = [0.0; 3];
         for (a, axis) in axes.iter_mut().enumerate() {
             let wanted = target.map(|t| t(i)[a]);
-            let number = axis.code(coder, cell[a], [middle[a], half], wanted);
+            let number = axis.code(coder, cell[a], [middle[a], half[a]], wanted);
             position[a] = number.ok_or(Malformed("a coordinate that is no number"))?;
         }
         if coder.is_exhausted() {

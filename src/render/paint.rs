@@ -1,7 +1,10 @@
 //! What colours a surface has.
 
 use super::{RenderError, sequential};
-use crate::mesh::{Attribute, Semantic, TriMesh};
+use crate::mesh::{
+    Attribute, Semantic, TriMesh,
+    srgb::{is_linear, srgb_of},
+};
 
 /// Where colours come from.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,10 +31,11 @@ const SQUARES: f64 = 16.0;
 const MISSING: [f64; 3] = [f64::NAN; 3];
 
 impl CornerPaint {
-    /// Colours as they are, normals as (n + 1) / 2, texture coordinates as red and green with a pattern of
+    /// Colours as they are, those of glTF from linear to sRGB, normals as (n + 1) / 2, texture coordinates as red and green with a pattern of
     /// squares; `None` for anything else. What has no value is magenta.
     pub fn new(mesh: &TriMesh, attribute: &Attribute) -> Option<Self> {
         let colour: fn([f64; 3]) -> [u8; 3] = match (attribute.semantic, attribute.num_components) {
+            (Semantic::Color(_), 1 | 3 | 4) if is_linear(attribute) => |linear| bytes(linear.map(srgb_of)),
             (Semantic::Color(_), 1 | 3 | 4) => bytes,
             (Semantic::Normal, 3) => |n| bytes(n.map(|c| 0.5 * (c + 1.0))),
             (Semantic::TexCoord(_), 2) => texture,
@@ -113,6 +117,9 @@ mod tests {
         let colour = paint(Semantic::Color(0), 3, Values::U8(vec![255, 0, 51, 0, 102, 255]));
         assert_eq!(at(&colour, 0), Some([255, 0, 51]));
         assert_eq!(at(&colour, 1), Some([0, 102, 255]));
+        let linear =
+            Attribute::new("COLOR_0", Semantic::Color(0), Domain::Vertex, 3, Values::F32(vec![0.2159; 9]));
+        assert_eq!(at(&CornerPaint::new(&mesh, &linear), 0), Some([128; 3]), "glTF has linear colours");
         let normal = paint(Semantic::Normal, 3, Values::F32(vec![0.0, 0.0, 1.0, -1.0, 0.0, 0.0]));
         assert_eq!(at(&normal, 0), Some([128, 128, 255]));
         let uv = paint(Semantic::TexCoord(0), 2, Values::F32(vec![0.51, 0.26, 1.01, -0.01]));

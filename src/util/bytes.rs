@@ -40,6 +40,10 @@ impl<'a> Reader<'a> {
         self.take(8).map(LittleEndian::read_f64)
     }
 
+    pub(crate) fn i64(&mut self) -> Option<i64> {
+        self.take(8).map(LittleEndian::read_i64)
+    }
+
     /// A number of 32 bits in one to five bytes, without superfluous ones.
     pub(crate) fn varint(&mut self) -> Option<u32> {
         let mut value = 0_u64;

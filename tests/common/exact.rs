@@ -3,7 +3,8 @@
 #![allow(dead_code)]
 
 use lwc::{
-    DecodeOptions, Decoder, EncodeOptions, Encoded, LevelMesh, Limits, RepairReport, TriMesh, decode, encode,
+    DecodeOptions, Decoder, EncodeOptions, Encoded, Lattice, LevelMesh, Limits, RepairReport, StreamInfo,
+    TriMesh, decode, encode,
 };
 
 /// A triangle by the grid cells of its corners.
@@ -69,6 +70,34 @@ pub fn quantize_on(mesh: &TriMesh, quantization_bits: u32, side_of_stream: Optio
     }
 }
 
+/// The same on the grid of a stream, whichever it is.
+fn quantize_like(info: &StreamInfo, mesh: &TriMesh) -> Quantized {
+    let in_cube = quantize_on(mesh, info.quantization_bits(), None);
+    let Some(Lattice { origin, step }) = info.lattice() else {
+        return quantize_on(mesh, info.quantization_bits(), Some(info.side()));
+    };
+    let cell = |v: u32| -> [i64; 3] {
+        let p = mesh.positions()[v as usize];
+        std::array::from_fn(|a| {
+            ((p[a] - origin[a]) / step[a] + 0.5).floor() as i64 - info.lattice_offset()[a]
+        })
+    };
+    let usable = mesh.triangles().iter().filter(|&&[a, b, c]| a != b && b != c && c != a);
+    Quantized { triangles: canonical(usable.map(|t| t.map(cell))), ..in_cube }
+}
+
+/// Where the stream has a cell, to a few roundings.
+fn place(info: &StreamInfo, cell: [i32; 3]) -> [f64; 3] {
+    let steps = 2f64.powi(info.quantization_bits() as i32) - 1.0;
+    let offset = info.lattice_offset();
+    std::array::from_fn(|axis| match info.lattice() {
+        None => info.origin()[axis] + f64::from(cell[axis]) / steps * info.side(),
+        Some(Lattice { origin, step }) => {
+            origin[axis] + (offset[axis] + i64::from(cell[axis])) as f64 * step[axis]
+        }
+    })
+}
+
 /// The triangles of a decoded mesh in the same form.
 pub fn cell_triangles(mesh: LevelMesh) -> Vec<CellTriangle> {
     let cell = |v: u32| mesh.quantized_positions()[v as usize].map(i64::from);
@@ -110,7 +139,8 @@ pub fn assert_exact(
     }
     assert!(decoder.is_complete(), "{what}: passes are missing");
     let decoded = decoder.mesh().expect("a complete stream has a mesh");
-    let wanted = quantize_on(mesh, quantization_bits, decoder.info().map(|info| info.side()));
+    let info = decoder.info().expect("a complete stream has a table");
+    let wanted = quantize_like(info, mesh);
     assert_eq!(decoded.quantization_bits(), quantization_bits, "{what}");
     assert_eq!(report.degenerate_triangles, wanted.degenerate_triangles, "{what}");
     assert_eq!(report.isolated_vertices, mesh.num_vertices() - wanted.used_vertices, "{what}");
@@ -119,12 +149,9 @@ pub fn assert_exact(
     assert!(cell_triangles(decoded) == wanted.triangles, "{what}: other triangles");
 
     // Positions in model units are those of the cells, in the view and in the one-shot result.
-    let info = decoder.info().expect("a complete stream has a table");
-    let steps = 2f64.powi(quantization_bits as i32) - 1.0;
     let magnitude = info.origin().iter().fold(info.side(), |m, o| m.max(o.abs()));
     for (position, cell) in decoded.positions().into_iter().zip(decoded.quantized_positions()) {
-        for axis in 0..3 {
-            let wanted = info.origin()[axis] + f64::from(cell[axis]) / steps * info.side();
+        for (axis, wanted) in place(info, *cell).into_iter().enumerate() {
             // A handful of roundings of numbers up to `magnitude`, or of the smallest numbers.
             let tolerance = magnitude * 1e-15 + 1e-322;
             assert!((position[axis] - wanted).abs() <= tolerance, "{what}: {position:?} off the grid");

@@ -91,14 +91,19 @@ export interface PassInfo {
   end: number;
 }
 
+/** Numbers of a stream in front of those of its passes. */
+const HEAD = 9;
+
 /** What a stream says of itself before its first pass. */
 export interface StreamInfo {
   /** Bits per coordinate of the finest mesh. */
   quantizationBits: number;
   /** Smallest corner of the grid, model units. */
   origin: [number, number, number];
-  /** Side of the grid, model units. */
+  /** Longest side of the grid, model units. */
   side: number;
+  /** Sides of a cell of the finest grid, model units: they differ where the stream says so. */
+  step: [number, number, number];
   totalBytes: number;
   finestLevel: number;
   passes: PassInfo[];
@@ -445,15 +450,18 @@ export class Decoder {
     const length = this.#wasm.info_length(this.#handle);
     if (length === 0) return undefined;
     const numbers = [...new Float64Array(this.#wasm.memory.buffer, this.#wasm.info(this.#handle), length)];
-    const [quantizationBits, x, y, z, side, totalBytes] = numbers as [number, number, number, number, number, number];
+    const [quantizationBits, x, y, z, side, totalBytes, ...step] = numbers.slice(0, HEAD) as [
+      number, number, number, number, number, number, number, number, number,
+    ];
     const passes: PassInfo[] = [];
-    for (let i = 6; i < length; i += 7) {
+    for (let i = HEAD; i < length; i += 7) {
       const [kind, level, bits, vertices, triangles, bytes, end] = numbers.slice(i, i + 7) as [
         number, number, number, number, number, number, number,
       ];
       passes.push({ kind: KINDS[kind]!, level, quantizationBits: bits, vertices, triangles, bytes, end });
     }
-    return { quantizationBits, origin: [x, y, z], side, totalBytes, finestLevel: passes.at(-1)?.level ?? 0, passes };
+    const finestLevel = passes.at(-1)?.level ?? 0;
+    return { quantizationBits, origin: [x, y, z], side, step, totalBytes, finestLevel, passes };
   }
 }
 

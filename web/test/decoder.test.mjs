@@ -95,6 +95,14 @@ test('positions are the middles of the cells', () => {
     const expected = origin[i % 3] + (cells[i] / (2 ** quantizationBits - 1)) * side;
     assert.equal(positions[i], Math.fround(expected));
   }
+  const lattice = new Decoder(wasm);
+  lattice.push(read('lattice-with-offset.lwc'));
+  assert.deepEqual(lattice.info.step, [0.01, 0.02, 0.003]);
+  lattice.positions.forEach((x, i) => {
+    const expected = lattice.info.origin[i % 3] + lattice.cells[i] * lattice.info.step[i % 3];
+    assert.ok(Math.abs(x - expected) <= 1e-6 * Math.max(1, Math.abs(expected)));
+  });
+  lattice.free();
   const relative = decode(wasm, read('utm-30-bits.lwc'), { relative: true });
   assert.ok(relative.positions.every((x) => x >= 0));
   decoder.free();

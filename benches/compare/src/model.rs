@@ -1,7 +1,7 @@
 //! A mesh as every codec gets it.
 
 use anyhow::ensure;
-use lwc::{EncodeOptions, Optimize, TriMesh};
+use lwc::{EncodeOptions, GridChoice, Optimize, TriMesh};
 use std::path::Path;
 
 /// A mesh on the grid, cut into an oriented surface.
@@ -27,6 +27,8 @@ impl Model {
         let mut options = EncodeOptions::default();
         options.quantization_bits = bits;
         options.optimize = Optimize::Size;
+        // The same grid for all codecs.
+        options.grid = GridChoice::Cube;
         let encoded = lwc::encode(&original, &options)?;
         let mesh = lwc::decode(&encoded.bytes, lwc::DecodeOptions::new())?;
         let (origin, step) = (encoded.info.origin(), encoded.info.side() / f64::from((1_u32 << bits) - 1));

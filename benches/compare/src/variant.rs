@@ -1,7 +1,7 @@
 //! Ways to encode that are compared.
 
 use lwc::descriptors::Descriptor;
-use lwc::{EncodeOptions, Optimize, Partition, Profile};
+use lwc::{EncodeOptions, GridChoice, Optimize, Partition, Profile};
 use std::fmt;
 use std::str::FromStr;
 
@@ -35,6 +35,7 @@ impl Variant {
     pub fn options(self, bits: u32) -> EncodeOptions {
         let mut options = EncodeOptions::default();
         options.quantization_bits = bits;
+        options.grid = GridChoice::Cube;
         options.profile = self.profile;
         options.descriptor = self.descriptor.unwrap_or_default();
         match self.aim {

@@ -170,8 +170,14 @@ typedef struct LwcEncodeOptions {
   double radius;
   // Factor of the radius from each level to the next coarser one.
   double growth;
-  // Bits per coordinate, 1 to 30.
+  // Bits per coordinate, 1 to 30; not looked at where `step` is set.
   uint32_t quantization_bits;
+  // Keep the cubic grid even if more than 1 % of the triangles collapse or turn over in it.
+  bool cubic_grid;
+  // Steps of a lattice along the axes, model units, above 0; all 0 for the grid of `quantization_bits`.
+  double step[3];
+  // A point of that lattice, model units. Streams with the same step and origin share borders bit for bit.
+  double grid_origin[3];
   // Levels above the base mesh; negative: until the base mesh is small.
   int32_t levels;
   // Grid steps to the mean edge of a level; 0: by the error of each level.
@@ -526,6 +532,21 @@ const char *lwc_mesh_attribute_name(const struct LwcMesh *mesh,
                                     size_t index,
                                     size_t entry);
 
+// How many texts a mesh has besides its attributes, such as its coordinate reference system.
+//
+// # Safety
+// `mesh` is null, or was handed out by this library and has not been freed.
+size_t lwc_mesh_num_metadata(const struct LwcMesh *mesh);
+
+// One of these texts and its key (`crs.wkt`), valid until the mesh is freed; LWC_STATUS_NOTHING_TO_DO if there is none.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `key` and `text` can be written to.
+enum LwcStatus lwc_mesh_metadata(const struct LwcMesh *mesh,
+                                 size_t index,
+                                 const char **key,
+                                 const char **text);
+
 // Says more about the last call of this thread that failed; valid until the next one that does.
 const char *lwc_last_error(void);
 
@@ -623,6 +644,21 @@ enum LwcStatus lwc_mesh_attribute_indices(const struct LwcMesh *mesh,
 const char *lwc_mesh_attribute_name(const struct LwcMesh *mesh,
                                     size_t index,
                                     size_t entry);
+
+// How many texts a mesh has besides its attributes, such as its coordinate reference system.
+//
+// # Safety
+// `mesh` is null, or was handed out by this library and has not been freed.
+size_t lwc_mesh_num_metadata(const struct LwcMesh *mesh);
+
+// One of these texts and its key (`crs.wkt`), valid until the mesh is freed; LWC_STATUS_NOTHING_TO_DO if there is none.
+//
+// # Safety
+// `mesh` was handed out by this library and has not been freed; `key` and `text` can be written to.
+enum LwcStatus lwc_mesh_metadata(const struct LwcMesh *mesh,
+                                 size_t index,
+                                 const char **key,
+                                 const char **text);
 
 // Says more about the last call of this thread that failed; valid until the next one that does.
 const char *lwc_last_error(void);

@@ -104,6 +104,11 @@ fn text(text: &str) -> CString {
     CString::new(text.split('\0').next().unwrap_or_default()).unwrap_or_default()
 }
 
+/// Keys and texts as C wants them.
+pub fn metadata_of(attributes: &Attributes) -> Vec<[CString; 2]> {
+    attributes.metadata.iter().map(|(key, value)| [text(key), text(value)]).collect()
+}
+
 fn misfit(sentence: &str) -> Status {
     tell(Status::Attribute, sentence)
 }
@@ -378,4 +383,34 @@ unsafe fn copy_out<T: Copy>(to: *mut T, from: &[T]) -> Result<(), Status> {
         unsafe { std::ptr::copy_nonoverlapping(from.as_ptr(), to, from.len()) };
     }
     Ok(())
+}
+
+/// How many texts a mesh has besides its attributes, such as its coordinate reference system.
+///
+/// # Safety
+/// `mesh` is null, or was handed out by this library and has not been freed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_mesh_num_metadata(mesh: *const Mesh) -> usize {
+    // SAFETY: the caller's promise.
+    unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.metadata.len())
+}
+
+/// One of these texts and its key (`crs.wkt`), valid until the mesh is freed; LWC_STATUS_NOTHING_TO_DO if there is none.
+///
+/// # Safety
+/// `mesh` was handed out by this library and has not been freed; `key` and `text` can be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lwc_mesh_metadata(
+    mesh: *const Mesh,
+    index: usize,
+    key: *mut *const c_char,
+    text: *mut *const c_char,
+) -> Status {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let mesh = unsafe { mesh.as_ref() }.ok_or(Status::NullPointer)?;
+        let [found_key, found_text] = mesh.metadata.get(index).ok_or(Status::NothingToDo)?;
+        // SAFETY: the caller's promise.
+        unsafe { put(key, found_key.as_ptr()).and_then(|()| put(text, found_text.as_ptr())) }
+    })
 }

@@ -98,7 +98,7 @@ pub fn decode(error: DecodeError) -> Status {
 pub fn encode(error: EncodeError) -> Status {
     let status = match error {
         EncodeError::NoTriangles => Status::NoTriangles,
-        EncodeError::Option { .. } => Status::Option,
+        EncodeError::Option { .. } | EncodeError::StepTooSmall { .. } => Status::Option,
         EncodeError::TooLarge(_) => Status::TooLarge,
         EncodeError::BoundingBox => Status::BoundingBox,
         EncodeError::Attribute { .. } => Status::Attribute,

@@ -27,6 +27,7 @@ use losses::Listed;
 use lwc::losses::Losses;
 use lwc::mesh::Attributes;
 use lwc::{PassKind, PositionUpdater, TriMesh};
+use std::ffi::CString;
 use std::slice;
 
 /// A mesh with its attributes, that owns its arrays.
@@ -37,13 +38,17 @@ pub struct Mesh {
     texts: Vec<Texts>,
     /// What it lacks of its stream.
     losses: Listed,
+    /// Keys and texts of the metadata.
+    metadata: Vec<[CString; 2]>,
 }
 
 impl Mesh {
     /// As a pointer for C.
     fn hand_out(mesh: TriMesh, attributes: Attributes, losses: Losses) -> *mut Self {
         let texts = Texts::of(&attributes);
-        Box::into_raw(Box::new(Self { mesh, attributes, texts, losses: Listed::new(losses) }))
+        let metadata = attributes::metadata_of(&attributes);
+        let losses = Listed::new(losses);
+        Box::into_raw(Box::new(Self { mesh, attributes, texts, losses, metadata }))
     }
 }
 

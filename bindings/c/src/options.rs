@@ -2,7 +2,7 @@
 
 use crate::error::{Status, tell};
 use lwc::descriptors::{Descriptor, Window};
-use lwc::{Limits, Optimize, Partition, Profile};
+use lwc::{GridChoice, Lattice, Limits, Optimize, Partition, Profile};
 use std::ffi::{CStr, c_char};
 
 /// How to decode, and the limits for an untrusted stream.
@@ -39,8 +39,14 @@ pub struct EncodeOptions {
     pub radius: f64,
     /// Factor of the radius from each level to the next coarser one.
     pub growth: f64,
-    /// Bits per coordinate, 1 to 30.
+    /// Bits per coordinate, 1 to 30; not looked at where `step` is set.
     pub quantization_bits: u32,
+    /// Keep the cubic grid even if more than 1 % of the triangles collapse or turn over in it.
+    pub cubic_grid: bool,
+    /// Steps of a lattice along the axes, model units, above 0; all 0 for the grid of `quantization_bits`.
+    pub step: [f64; 3],
+    /// A point of that lattice, model units. Streams with the same step and origin share borders bit for bit.
+    pub grid_origin: [f64; 3],
     /// Levels above the base mesh; negative: until the base mesh is small.
     pub levels: i32,
     /// Grid steps to the mean edge of a level; 0: by the error of each level.
@@ -94,6 +100,9 @@ pub extern "C" fn lwc_encode_options_default() -> EncodeOptions {
         radius: options.window.radius,
         growth: options.growth,
         quantization_bits: options.quantization_bits,
+        cubic_grid: false,
+        step: [0.0; 3],
+        grid_origin: [0.0; 3],
         levels: options.levels.map_or(-1, |levels| levels as i32),
         steps_per_edge: options.steps_per_edge.unwrap_or(0.0),
         normal_bits: options.normal_bits,
@@ -147,6 +156,7 @@ pub fn encode(from: &EncodeOptions) -> Result<lwc::EncodeOptions, Status> {
     options.window = Window { rings: from.rings, radius: from.radius };
     options.growth = from.growth;
     options.quantization_bits = from.quantization_bits;
+    options.grid = grid(from);
     options.levels = u32::try_from(from.levels).ok();
     options.steps_per_edge = (from.steps_per_edge != 0.0).then_some(from.steps_per_edge);
     options.normal_bits = from.normal_bits;
@@ -159,6 +169,15 @@ pub fn encode(from: &EncodeOptions) -> Result<lwc::EncodeOptions, Status> {
     options.keep_isolated = from.keep_isolated;
     options.keep_degenerate = from.keep_degenerate;
     Ok(options)
+}
+
+/// The grid that is asked for. What makes no lattice is refused by the encoder.
+fn grid(from: &EncodeOptions) -> GridChoice {
+    match from.step {
+        [0.0, 0.0, 0.0] if from.cubic_grid => GridChoice::Cube,
+        [0.0, 0.0, 0.0] => GridChoice::Auto,
+        step => GridChoice::Lattice(Lattice { origin: from.grid_origin, step }),
+    }
 }
 
 fn unknown(option: &str, name: &str) -> Status {

@@ -64,6 +64,12 @@ fn errors_have_a_status_and_a_sentence() {
         assert_eq!(lwc_encode(mesh, &options, &mut encoded), Status::Option);
         assert!(last_error().contains("quantization bits is 99"), "{}", last_error());
         options = lwc_encode_options_default();
+        options.step = [1.0, -1.0, 1.0];
+        assert_eq!(lwc_encode(mesh, &options, &mut encoded), Status::Option);
+        options.step = [1.0, 1e-30, 1.0];
+        assert_eq!(lwc_encode(mesh, &options, &mut encoded), Status::Option);
+        assert!(last_error().contains("too small for this mesh"), "{}", last_error());
+        options = lwc_encode_options_default();
         options.descriptor = c"magic".as_ptr();
         assert_eq!(lwc_encode(mesh, &options, &mut encoded), Status::Option);
         assert_eq!(last_error(), "there is no descriptor magic");
@@ -80,6 +86,27 @@ fn errors_have_a_status_and_a_sentence() {
         lwc_mesh_free(decoded);
         lwc_encoded_free(encoded);
         lwc_mesh_free(mesh);
+    }
+}
+
+#[test]
+fn a_mesh_comes_back_on_the_lattice_that_is_asked_for() {
+    let mesh = square();
+    let (mut encoded, mut decoded) = (null_mut(), null_mut());
+    let mut positions = [0.0; 12];
+    unsafe {
+        let mut options = lwc_encode_options_default();
+        (options.step, options.grid_origin) = ([0.75, 0.5, 1.0], [0.25, 10.0, 0.0]);
+        assert_eq!(lwc_encode(mesh, &options, &mut encoded), Status::Ok);
+        let (bytes, size) = (lwc_encoded_bytes(encoded), lwc_encoded_num_bytes(encoded));
+        assert_eq!(lwc_decode(bytes, size, null(), &mut decoded), Status::Ok);
+        positions.copy_from_slice(std::slice::from_raw_parts(lwc_mesh_positions(decoded), 12));
+        lwc_mesh_free(decoded);
+        lwc_encoded_free(encoded);
+        lwc_mesh_free(mesh);
+    }
+    for position in positions.chunks(3) {
+        assert!([0.25, 1.0].contains(&position[0]) && [0.0, 1.0].contains(&position[1]), "{positions:?}");
     }
 }
 

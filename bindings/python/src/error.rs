@@ -35,6 +35,7 @@ pub fn encode_error(py: Python<'_>, error: lwc::EncodeError) -> PyErr {
     let kind = match error {
         E::NoTriangles => "NoTriangles",
         E::Option { .. } => "Option",
+        E::StepTooSmall { .. } => "StepTooSmall",
         E::TooLarge(_) => "TooLarge",
         E::BoundingBox => "BoundingBox",
         E::Attribute { .. } => "Attribute",

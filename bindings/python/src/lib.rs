@@ -172,12 +172,19 @@ fn info_dict<'py>(py: Python<'py>, info: &StreamInfo) -> PyResult<Bound<'py, PyD
     dict.set_item("quantization_bits", info.quantization_bits())?;
     dict.set_item("origin", (x, y, z))?;
     dict.set_item("side", info.side())?;
+    let [x, y, z] = info.step();
+    dict.set_item("step", (x, y, z))?;
+    let tuple = |[x, y, z]: [f64; 3]| (x, y, z);
+    dict.set_item("lattice_origin", info.lattice().map(|lattice| tuple(lattice.origin)))?;
     dict.set_item("levels", info.finest_level())?;
     dict.set_item("total_bytes", info.total_bytes())?;
     dict.set_item("profile", info.profile().name())?;
     dict.set_item("passes", passes?)?;
     let attributes: PyResult<Vec<_>> = info.attributes().iter().map(|one| attribute_dict(py, one)).collect();
     dict.set_item("attributes", attributes?)?;
+    let metadata = PyDict::new(py);
+    info.metadata().iter().try_for_each(|(key, text)| metadata.set_item(key, text))?;
+    dict.set_item("metadata", metadata)?;
     Ok(dict)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::error::option_error;
 use lwc::descriptors::Descriptor;
-use lwc::{DecodeOptions, EncodeOptions, Limits, Optimize, Partition, Profile};
+use lwc::{DecodeOptions, EncodeOptions, GridChoice, Lattice, Limits, Optimize, Partition, Profile};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 /// The options of `encode`. What is missing or None has its default.
 pub fn encode(py: Python<'_>, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<EncodeOptions> {
     let mut options = EncodeOptions::default();
+    let mut grid = GridKeywords::default();
     for (key, value) in keywords.into_iter().flatten().filter(|(_, value)| !value.is_none()) {
         let key: String = key.extract()?;
         let name = || value.extract::<String>();
@@ -24,6 +25,9 @@ pub fn encode(py: Python<'_>, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<
             "radius" => options.window.radius = value.extract()?,
             "growth" => options.growth = value.extract()?,
             "quantization_bits" => options.quantization_bits = value.extract()?,
+            "step" => grid.step = Some(steps(&value)?),
+            "grid_origin" => grid.origin = Some(value.extract()?),
+            "cubic_grid" => grid.is_cubic = value.extract()?,
             "levels" => options.levels = Some(value.extract()?),
             "steps_per_edge" => options.steps_per_edge = Some(value.extract()?),
             "normal_bits" => options.normal_bits = value.extract()?,
@@ -42,7 +46,35 @@ pub fn encode(py: Python<'_>, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<
             }
         }
     }
+    options.grid = grid.choice()?;
     Ok(options)
+}
+
+/// The keywords about the grid.
+#[derive(Default)]
+struct GridKeywords {
+    step: Option<[f64; 3]>,
+    origin: Option<[f64; 3]>,
+    is_cubic: bool,
+}
+
+impl GridKeywords {
+    fn choice(self) -> PyResult<GridChoice> {
+        match self {
+            Self { step: Some(step), origin, is_cubic: false } => {
+                Ok(GridChoice::Lattice(Lattice { origin: origin.unwrap_or_default(), step }))
+            }
+            Self { step: None, origin: None, is_cubic: true } => Ok(GridChoice::Cube),
+            Self { step: None, origin: None, is_cubic: false } => Ok(GridChoice::Auto),
+            Self { step: None, .. } => Err(PyTypeError::new_err("grid_origin needs a step")),
+            Self { .. } => Err(PyTypeError::new_err("a step makes no cubic_grid")),
+        }
+    }
+}
+
+/// One step for all axes, or three.
+fn steps(value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
+    value.extract().map(|step| [step; 3]).or_else(|_| value.extract())
 }
 
 fn find<T: Copy>(

@@ -8,7 +8,7 @@ use lwc::losses::Losses;
 use lwc::mesh::{Attributes, IDENTITY, Instance};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyList};
+use pyo3::types::{PyBytes, PyDict, PyList};
 
 /// A `lwc.Scene`. What is no scene is one mesh that is where its coordinates say.
 pub fn scene<'py>(
@@ -17,6 +17,8 @@ pub fn scene<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let unpacked = py.detach(|| Scene::unpack(&tri_mesh, &attributes));
     let unpacked = unpacked.map_err(|error| scene_error(py, error))?;
+    let metadata = PyDict::new(py);
+    attributes.metadata.iter().try_for_each(|(key, text)| metadata.set_item(key, text))?;
     let materials = attributes.gltf_materials.take().unwrap_or_default();
     let (meshes, instances): (Vec<_>, _) = match unpacked {
         Some(scene) => {
@@ -38,6 +40,7 @@ pub fn scene<'py>(
         PyList::new(py, instances?)?,
         json,
         PyList::new(py, images.collect::<Vec<_>>())?,
+        metadata,
     ))
 }
 

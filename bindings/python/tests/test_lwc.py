@@ -74,6 +74,31 @@ def test_a_mesh_comes_back_on_the_grid():
     assert wanted == {tuple(np.roll(t, -t.argmin())) for t in triangles.astype(np.int64)}
 
 
+def test_tiles_on_one_lattice_share_their_border():
+    vertices, faces = torus()
+    lattice = {"step": (0.003, 0.01, 0.02), "grid_origin": (100.1, 0.0, -7.0)}
+    left = lwc.decode(lwc.encode(vertices, faces, **lattice))
+    stream = lwc.encode(vertices * [1, 1, -1], faces[:, ::-1], **lattice)
+    info = lwc.info(stream)
+    assert info["step"] == lattice["step"] and info["lattice_origin"] == lattice["grid_origin"]
+    assert lwc.info(lwc.encode(vertices, faces))["lattice_origin"] is None
+    border = lambda mesh: sorted(map(tuple, mesh[0][abs(mesh[0][:, 2]) < 1e-2]))
+    assert len(border(left)) == 96 and border(left) == border(lwc.decode(stream))
+    assert lwc.info(lwc.encode(vertices, faces, step=0.5))["step"] == (0.5, 0.5, 0.5)
+
+
+def test_grids_that_cannot_be_are_refused():
+    for keywords, error in [
+        ({"step": 1e-12}, lwc.EncodeError),
+        ({"step": -1.0}, lwc.EncodeError),
+        ({"step": (1.0, 2.0)}, (TypeError, ValueError)),
+        ({"grid_origin": (0.0, 0.0, 0.0)}, TypeError),
+        ({"step": 1.0, "cubic_grid": True}, TypeError),
+    ]:
+        with pytest.raises(error):
+            lwc.encode(*torus(), **keywords)
+
+
 def test_levels_and_prefixes_are_coarser_meshes():
     stream = lwc.encode(*torus())
     passes = lwc.info(stream)["passes"]

@@ -1,26 +1,33 @@
 //! What may be typed after `lwc encode`.
 
+use super::grid::GridArgs;
 use crate::cli::args::{Reading, Scale};
+use crate::cli::exit::Failure;
+use crate::cli::input::{StreamInput, name_of};
+use crate::cli::input_file::is_stdin;
 use crate::cli::losses::Strictness;
 use crate::cli::output::{Destination, with_ending, without_mesh_ending};
 use crate::cli::quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::value_parser;
 use lwc::io::TerrainOptions;
-use lwc::{EncodeOptions, Optimize, Partition, Profile};
-use std::path::PathBuf;
+use lwc::{EncodeOptions, GridChoice, Optimize, Partition, Profile};
+use std::path::{Path, PathBuf};
 
-/// Encode a mesh (.obj .ply .stl .glb .gltf) or a terrain point cloud (.las .laz), plain or compressed (.zst).
+/// Encode a mesh (.obj .ply .stl .glb .gltf) or a terrain point cloud (.las .laz), plain or compressed (.gz .zst).
 ///
-/// The finest level is the mesh with its vertices rounded to a grid of 2^BITS cells along its longest side;
-/// every triangle comes back, with its orientation. Warnings count what has to be dropped or cut.
+/// The finest level is the mesh with its vertices rounded to a grid: 2^BITS cells along its longest side (`-q`), or steps in
+/// units of the model (`--step`, `--precision`, `--grid`). Every triangle comes back, with its orientation. Warnings count what has to be dropped or cut.
 #[derive(Debug, clap::Args)]
 pub struct Encode {
-    /// Mesh to encode.
+    /// Mesh to encode, `-` for standard input (with --format).
     #[arg(value_name = "MODEL")]
     pub input: PathBuf,
-    /// Stream to write, `-` for standard output. Default: MODEL with the ending .lwc, in the same folder. The endings of
-    /// mesh files are refused.
+    /// More meshes: all become one scene, each mesh with the name of its file. Needs -o.
+    #[arg(value_name = "MORE")]
+    pub others: Vec<PathBuf>,
+    /// Stream to write, `-` for standard output. Default: MODEL with the ending .lwc, in the same folder; standard output
+    /// for standard input. The endings of mesh files are refused.
     ///
     /// A file that exists is replaced once the new one is complete.
     #[arg(short, long, value_name = "FILE")]
@@ -101,6 +108,9 @@ pub struct Encode {
     /// Keep only positions and triangles.
     #[arg(long)]
     pub no_attributes: bool,
+    /// Leave out textures; colours and names of materials stay.
+    #[arg(long)]
+    pub no_textures: bool,
     /// Keep every number of positions and attributes bit for bit: floats, doubles and integers. What the grid rounds off is
     /// stored after the last pass.
     #[arg(long)]
@@ -114,7 +124,7 @@ pub struct Encode {
     /// Keep the order of vertices and triangles, and the first corner of each triangle; `lwc info` shows how many bytes that takes.
     #[arg(long)]
     pub keep_order: bool,
-    /// Join the meshes of a scene (.glb .gltf) into one, each in its place. Without this option each mesh is stored
+    /// Join the meshes of a scene (.glb .gltf), or of several files, into one, each in its place. Without this option each mesh is stored
     /// once, in its own coordinates, with a list of all the places where it is used.
     #[arg(long)]
     pub merge: bool,
@@ -128,15 +138,18 @@ pub struct Encode {
     pub json: bool,
     #[command(flatten)]
     pub reading: Reading,
-    // Last: its heading would cover what follows.
+    // Last: their headings would cover what follows.
+    #[command(flatten)]
+    pub grid: GridArgs,
     #[command(flatten)]
     pub terrain: Terrain,
 }
 
 impl Encode {
-    /// The options of the library.
-    pub fn options(&self) -> EncodeOptions {
+    /// The options of the library, with the grid that is asked for.
+    pub fn options(&self, grid: GridChoice) -> EncodeOptions {
         let mut options = EncodeOptions::default();
+        options.grid = grid;
         options.descriptor = self.scale.descriptor;
         options.window = self.scale.window.window();
         options.descriptor_attributes.clone_from(&self.scale.descriptor_attributes);
@@ -159,7 +172,44 @@ impl Encode {
         options
     }
 
+    /// All of them, in order.
+    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
+        std::iter::once(&self.input).chain(&self.others).map(PathBuf::as_path)
+    }
+
+    /// What to call them.
+    pub fn input_name(&self) -> String {
+        self.inputs().map(name_of).collect::<Vec<_>>().join(", ")
+    }
+
+    pub fn stream_input(&self) -> StreamInput<'_> {
+        let has_textures = !(self.no_textures || self.no_attributes);
+        let (paths, merge) = (self.inputs().collect(), self.merge);
+        StreamInput { paths, merge, has_textures, reading: &self.reading }
+    }
+
+    /// What can be seen before anything is read.
+    ///
+    /// # Errors
+    /// If several files have no name in common, or options are for one only.
+    pub fn check_output(&self) -> Result<(), Failure> {
+        let refuse = |what: &str| Err(Failure::Usage(what.to_owned()));
+        if !self.others.is_empty() && self.output.is_none() {
+            return refuse("several inputs make one stream: name it with -o");
+        }
+        if self.inputs().filter(|input| is_stdin(input)).count() > 1 {
+            return refuse("standard input can be read once");
+        }
+        if !self.others.is_empty() && self.terrain.options().is_some() {
+            return refuse("options for point clouds are for a single input");
+        }
+        Ok(())
+    }
+
     pub fn destination(&self) -> Destination {
+        if self.output.is_none() && is_stdin(&self.input) {
+            return Destination::Stdout;
+        }
         let beside = || with_ending(without_mesh_ending(&self.input), "lwc");
         Destination::new(self.output.clone().unwrap_or_else(beside))
     }

@@ -1,12 +1,14 @@
 //! `lwc encode`: a mesh file becomes a stream.
 
 pub mod args;
-mod grid_loss;
+mod grid;
+mod grid_report;
 mod report;
+mod unit;
 
 use super::bar::Part;
 use super::exit::Failure;
-use super::input::{read_for_stream, read_terrain};
+use super::input::{name_of, read_terrain};
 use super::input_file::{self, holds_stream};
 use super::losses;
 use super::output::Destination;
@@ -15,11 +17,10 @@ use super::ui::Ui;
 use super::verify;
 use anyhow::Context;
 use args::Encode;
-use grid_loss::GridLoss;
 use lwc::io::{Format, MeshFile};
 use lwc::losses::{Loss, LossKind, Losses, Stage};
 use lwc::mesh::{Attribute, Attributes, Semantic};
-use lwc::{EncodeOptions, Encoded};
+use lwc::{EncodeOptions, Encoded, GridChoice};
 use report::Report;
 use std::io;
 use std::path::Path;
@@ -28,9 +29,13 @@ use std::time::Instant;
 /// Reads, encodes, verifies, writes, reports.
 pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     let destination = args.destination();
-    check_input(&args.input).with_context(|| args.input.display().to_string())?;
-    destination.check(Some(&args.input), false)?;
+    args.check_output()?;
+    for input in args.inputs() {
+        check_input(input).with_context(|| name_of(input))?;
+        destination.check(Some(input), false)?;
+    }
     check_ending(&destination).with_context(|| destination.name())?;
+    let asked = args.grid.asked(&args.input)?;
     let start = Instant::now();
     let bar = ui.bar();
     let verifying = if args.verify { 30.0 } else { 0.0 };
@@ -38,7 +43,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         bar.split([("reading", 5.0), ("encoding", 85.0), ("verifying", verifying)]);
     let mut file = match args.terrain.options() {
         Some(options) => read_terrain(&args.input, &options, &args.reading, reading, ui)?,
-        None => read_for_stream(&args.input, args.merge, &args.reading, reading, ui)?,
+        None => args.stream_input().read(reading, ui)?,
     };
     let mut losses = file.report.losses();
     if args.no_attributes {
@@ -46,11 +51,15 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     }
     let read_seconds = start.elapsed().as_secs_f64();
 
-    let name = args.input.display().to_string();
+    let name = args.input_name();
     let start = Instant::now();
-    let (encoded, options) = encode(&file, args, encoding).with_context(|| name.clone())?;
+    let options = args.options(asked.choice(file.attributes.scene.as_ref()));
+    let (encoded, options) = encode(&file, args, options, encoding).with_context(|| name.clone())?;
     let encode_seconds = start.elapsed().as_secs_f64();
     warn_about(&name, &encoded, ui);
+    if let Some(note) = grid_report::note(options.grid, &encoded.info) {
+        ui.note(&name, note);
+    }
     if args.lossless {
         warn_of_what_is_not_finite(&name, &file.attributes, ui);
     }
@@ -61,17 +70,12 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
         verified = Some(verify::verify(&file, &options, &encoded, verifying).with_context(|| name.clone())?);
         ui.detail(&name, &format!("verified in {:.2} s", start.elapsed().as_secs_f64()));
     }
-    let grid = GridLoss::new(&file.mesh, &encoded.info, args.lossless);
     drop(bar);
-    if let Some(warning) = grid.as_ref().and_then(|grid| grid.warning(&file.mesh)) {
-        ui.warn(&name, &warning);
-    }
     losses.append(encoded.losses.clone());
     args.strictness.check(&losses).with_context(|| name.clone())?;
     destination.write(|out| out.write_all(&encoded.bytes))?;
     let (file, encoded) = (&file, &encoded);
-    let report =
-        Report { args, file, losses, verified, encoded, grid, destination, read_seconds, encode_seconds };
+    let report = Report { args, file, losses, verified, encoded, destination, read_seconds, encode_seconds };
     report.print(ui)
 }
 
@@ -99,14 +103,19 @@ fn check_ending(destination: &Destination) -> Result<(), Failure> {
 const LOSSLESS_BITS: [u32; 3] = [12, 15, 18];
 
 /// The smallest stream, and its options.
-fn encode(file: &MeshFile, args: &Encode, part: Part) -> Result<(Encoded, EncodeOptions), lwc::EncodeError> {
+fn encode(
+    file: &MeshFile,
+    args: &Encode,
+    options: EncodeOptions,
+    part: Part,
+) -> Result<(Encoded, EncodeOptions), lwc::EncodeError> {
     let encode = |options: EncodeOptions, part: Part| {
         let progress = |now: lwc::Progress| part.set_stage(now.stage, now.fraction);
         let encoded = lwc::encode_with_attributes(&file.mesh, &file.attributes, &options, &progress)?;
         Ok((encoded, options))
     };
-    let options = args.options();
-    if !args.lossless || args.quantization_bits.is_some() {
+    let is_chosen = args.quantization_bits.is_some() || matches!(options.grid, GridChoice::Lattice(_));
+    if !args.lossless || is_chosen {
         return encode(options, part);
     }
     let with = |i: usize| {
@@ -130,9 +139,10 @@ fn drop_attributes(file: &mut MeshFile) -> Losses {
     let attributes = std::mem::take(&mut file.attributes);
     let names = attributes.list.iter().map(|attribute| attribute.name.clone());
     let libraries = attributes.material_libraries.first().map(|_| "mtllib".to_owned());
+    let metadata = attributes.metadata.iter().map(|(key, _)| key.clone());
     let materials = attributes.gltf_materials.map(|_| "materials".to_owned());
     let dropped = |name| Loss::new(Stage::Encoding, LossKind::Dropped, name).requested();
-    names.chain(libraries).chain(materials).map(dropped).collect()
+    names.chain(libraries).chain(metadata).chain(materials).map(dropped).collect()
 }
 
 /// With `--lossless` even these are kept, and other programs may choke on them.

@@ -1,7 +1,7 @@
 //! What is told of a stream that was written.
 
 use super::args::Encode;
-use super::grid_loss::GridLoss;
+use super::grid_report;
 use crate::cli::losses;
 use crate::cli::output::{Destination, print_json};
 use crate::cli::passes;
@@ -22,8 +22,6 @@ pub struct Report<'a> {
     /// What was verified, if anything.
     pub verified: Option<String>,
     pub encoded: &'a Encoded,
-    /// Unless coordinates are kept bit for bit.
-    pub grid: Option<GridLoss>,
     pub destination: Destination,
     pub read_seconds: f64,
     pub encode_seconds: f64,
@@ -35,7 +33,7 @@ impl Report<'_> {
             let to_file = self.destination != Destination::Stdout;
             let out: Box<dyn Write> =
                 if to_file { Box::new(io::stdout().lock()) } else { Box::new(io::stderr()) };
-            print_json(out, &self.to_json())?;
+            print_json(out, &self.with_inputs(self.to_json()))?;
         } else if self.destination != Destination::Stdout || ui.is_verbose() {
             ui.say(&self.summary());
             if let Some(usual) = losses::usual(&self.losses) {
@@ -52,9 +50,16 @@ impl Report<'_> {
         self.encoded.bytes.len() as u64
     }
 
-    /// Bytes of the input file as it is, compressed or not.
+    /// Bytes of the input files as they are, compressed or not.
     fn input_bytes(&self) -> Option<u64> {
-        Some(std::fs::metadata(&self.args.input).ok()?.len()).filter(|&bytes| bytes > 0)
+        let size = |path| Some(std::fs::metadata(path).ok()?.len());
+        self.args.inputs().map(size).sum::<Option<u64>>().filter(|&bytes| bytes > 0)
+    }
+
+    /// Bytes of the images that are in the stream.
+    fn texture_bytes(&self) -> usize {
+        let materials = self.file.attributes.gltf_materials.as_ref();
+        materials.map_or(0, |materials| materials.images.iter().map(Vec::len).sum())
     }
 
     fn ratio(&self) -> Option<f64> {
@@ -66,12 +71,15 @@ impl Report<'_> {
         let (info, bytes, repair) = (&self.encoded.info, self.num_bytes(), &self.encoded.repair);
         let finest = info.passes().last();
         let vertices = finest.map_or(0, |p| p.vertices as usize - repair.repeated_vertices);
-        let ratio = self.ratio().map(|r| format!(", {:.1} % of {}", 100.0 * r, self.args.input.display()));
-        let grid = self.grid.as_ref().map(|grid| {
-            format!(": steps of {:.2e}, vertices off by at most {:.2e}", grid.step, grid.largest_error)
-        });
+        let ratio = self.ratio().map(|r| format!(", {:.1} % of {}", 100.0 * r, self.args.input_name()));
+        let steps = || format!(": steps of {}", grid_report::step(self.encoded.grid_error.step));
+        let grid = (!self.args.lossless).then(steps);
+        let textures = match self.texture_bytes() {
+            0 => String::new(),
+            bytes => format!(", {bytes} of them textures"),
+        };
         format!(
-            "{}: {}, {}, {} on the base mesh, {} bits{}\n{bytes} bytes, {:.2} bits per vertex{}, {:.2} s{}",
+            "{}: {}, {}, {} on the base mesh, {} bits{}\n{bytes} bytes{textures}, {:.2} bits per vertex{}, {:.2} s{}",
             self.destination.name(),
             counted(vertices, "vertex", "vertices"),
             counted(finest.map_or(0, |p| p.triangles as usize), "triangle", "triangles"),
@@ -85,9 +93,16 @@ impl Report<'_> {
         )
     }
 
+    /// Adds what was read.
+    fn with_inputs(&self, mut json: Value) -> Value {
+        json["inputs"] = self.args.inputs().map(|input| input.display().to_string()).collect();
+        json["texture_bytes"] = self.texture_bytes().into();
+        json
+    }
+
     fn to_json(&self) -> Value {
         let (args, info, mesh) = (self.args, &self.encoded.info, &self.file.mesh);
-        let repair = &self.encoded.repair;
+        let (repair, error) = (&self.encoded.repair, &self.encoded.grid_error);
         let finest = info.passes().last();
         let output = match &self.destination {
             Destination::Stdout => None,
@@ -106,9 +121,11 @@ impl Report<'_> {
             "triangles": finest.map(|p| p.triangles),
             "levels": info.finest_level(),
             "quantization_bits": info.quantization_bits(),
-            "step": self.grid.as_ref().map(|grid| grid.step),
-            "largest_error": self.grid.as_ref().map(|grid| grid.largest_error),
-            "triangles_lost": self.grid.as_ref().map(|grid| grid.triangles_lost),
+            "step": error.step,
+            "largest_error": error.largest_error,
+            "largest_error_in_edges": error.largest_error_in_edges,
+            "triangles_collapsed": error.triangles_collapsed,
+            "triangles_turned": error.triangles_turned,
             "descriptor": args.scale.descriptor.name(),
             "rings": args.scale.window.rings,
             "radius": args.scale.window.radius,

@@ -20,7 +20,7 @@ Examples:
   lwc experiment dragon.ply terrain.ply --output results
   lwc experiment dragon.ply terrain.ply --output results --noise")]
 pub struct Experiment {
-    /// Meshes (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst).
+    /// Meshes (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.gz).
     #[arg(value_name = "MESH", required = true)]
     pub meshes: Vec<PathBuf>,
     /// Folder for the results, created if it does not exist.

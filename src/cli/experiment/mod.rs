@@ -7,6 +7,7 @@ mod results;
 
 use super::bar::Part;
 use super::input::read_mesh;
+use super::output::is_compressed;
 use super::quantity::counted;
 use super::ui::Ui;
 use anyhow::Context;
@@ -45,11 +46,7 @@ pub fn run(args: &Args, ui: &Ui) -> anyhow::Result<()> {
 /// Bytes of a file, as a measure of its work; a compressed one counts more.
 fn weight(path: &Path) -> f64 {
     let bytes = std::fs::metadata(path).map_or(1, |metadata| metadata.len().max(1)) as f64;
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("zst")) {
-        2.0 * bytes
-    } else {
-        bytes
-    }
+    if is_compressed(path) { 2.0 * bytes } else { bytes }
 }
 
 fn run_mesh(

@@ -18,7 +18,7 @@ Examples:
   lwc render textured.lwc -o texcoord.png --bytes 20K --color-by texcoord
   lwc render model.lwc -o levels.png --montage --levels 0,4,8,12 --shading flat")]
 pub struct Render {
-    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.zst) or stream (.lwc).
+    /// Mesh (.obj .ply .stl .glb .gltf .las .laz, or compressed, such as .obj.gz) or stream (.lwc).
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
     /// Picture to write (.png), `-` for standard output.

@@ -19,10 +19,13 @@ pub fn compare(
     options: &EncodeOptions,
     decoder: &Decoder,
 ) -> Result<(), String> {
+    let found = decoder.attributes();
+    if found.metadata != attributes.metadata || found.gltf_materials != attributes.gltf_materials {
+        return Err("materials or metadata are missing".into());
+    }
     if attributes.list.is_empty() {
         return Ok(());
     }
-    let found = decoder.attributes();
     let decoded = decoder.mesh().ok_or("there is no mesh")?.to_manifold_mesh();
     if found.list.len() != attributes.list.len() || found.material_libraries != attributes.material_libraries
     {

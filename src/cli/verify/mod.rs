@@ -4,12 +4,14 @@
 
 mod attributes;
 mod exact;
+mod grid;
 mod triangle;
 
 use super::bar::Part;
 use super::exit::Failure;
+use grid::{Cell, ExpectedGrid};
 use lwc::io::MeshFile;
-use lwc::{Decoder, EncodeOptions, Encoded, Limits, TriMesh};
+use lwc::{Decoder, EncodeOptions, Encoded, Limits, StreamInfo, TriMesh};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use triangle::{is_usable, turned};
 
@@ -33,13 +35,13 @@ pub fn verify(
     let (mesh, attributes) = (&file.mesh, &file.attributes);
     let check = || {
         let decoder = decode(encoded, part.between(0.0, 0.5))?;
-        let expected = Quantized::new(mesh, options, encoded.info.side());
-        compare_surface(&expected, options.quantization_bits, encoded, &decoder)?;
+        let expected = Quantized::new(mesh, options, &encoded.info);
+        compare_surface(&expected, encoded, &decoder)?;
         part.set(0.7);
         let (decoded, found) = decoder.to_tri_mesh_with_attributes().ok_or("there is no mesh")?;
         compare_whole(&kept(mesh, options), &decoded, &expected, options)?;
         part.set(0.8);
-        let cells: Vec<Cell> = mesh.positions().iter().map(|&p| expected.cell(p)).collect();
+        let cells: Vec<Cell> = mesh.positions().iter().map(|&p| expected.grid.cell(p)).collect();
         attributes::compare(mesh, attributes, &cells, options, &decoder)?;
         if found.scene != attributes.scene || found.gltf_materials != attributes.gltf_materials {
             return Err("the scene or its materials differ".to_owned());
@@ -102,19 +104,10 @@ fn decode(encoded: &Encoded, part: Part) -> Result<Decoder, String> {
     Ok(decoder)
 }
 
-fn compare_surface(
-    expected: &Quantized,
-    quantization_bits: u32,
-    encoded: &Encoded,
-    decoder: &Decoder,
-) -> Result<(), String> {
+fn compare_surface(expected: &Quantized, encoded: &Encoded, decoder: &Decoder) -> Result<(), String> {
     let decoded = decoder.mesh().ok_or("there is no mesh")?;
     let info = &encoded.info;
-    let same_grid = info.side() == expected.side && info.origin() == expected.origin;
-    if info.quantization_bits() != quantization_bits
-        || decoded.quantization_bits() != quantization_bits
-        || !same_grid
-    {
+    if !expected.grid.is_that_of(info) || decoded.quantization_bits() != info.quantization_bits() {
         return Err("the grid differs".into());
     }
     let num_vertices = expected.num_vertices + encoded.repair.repeated_vertices;
@@ -148,17 +141,14 @@ fn compare_whole(
     }
     let place = |p: [f64; 3]| match options.lossless {
         true => p.map(f64::to_bits),
-        false => grid.cell(p).map(|c| c as u64),
+        false => grid.grid.cell(p).map(|c| c as u64),
     };
     let [wanted, found]: [Vec<[u64; 3]>; 2] =
         [mesh, decoded].map(|mesh| mesh.positions().iter().map(|&p| place(p)).collect());
     if options.keep_order && (wanted != found || mesh.triangles() != decoded.triangles()) {
         return Err("the order of vertices or triangles differs".into());
     }
-    // Where the grid is finer than doubles, places do not tell cells.
-    let magnitude = grid.origin.iter().fold(grid.side + f64::MIN_POSITIVE, |m, o| m.max(o.abs()));
-    let is_told = options.lossless || grid.side / grid.steps > 8.0 * f64::EPSILON * magnitude;
-    if is_told && stars(mesh, &wanted) != stars(decoded, &found) {
+    if (options.lossless || grid.grid.is_told_by_places()) && stars(mesh, &wanted) != stars(decoded, &found) {
         return Err("vertices have other triangles".into());
     }
     Ok(())
@@ -201,13 +191,9 @@ fn stars(mesh: &TriMesh, places: &[[u64; 3]]) -> Vec<u64> {
     stars
 }
 
-type Cell = [i32; 3];
-
 /// A mesh on the grid.
 struct Quantized {
-    origin: [f64; 3],
-    side: f64,
-    steps: f64,
+    grid: ExpectedGrid,
     /// Vertices that usable triangles have.
     num_vertices: usize,
     /// Usable triangles, see [`sorted`].
@@ -215,44 +201,14 @@ struct Quantized {
 }
 
 impl Quantized {
-    /// g = floor((x − min)·(2^q − 1)/s + ½) per axis: min per axis and s the longest side, both over the
-    /// vertices of the triangles with three different vertices and what else is kept. `side` is s as the stream has
-    /// it, if it differs by the rounding of coordinates only.
-    fn new(mesh: &TriMesh, options: &EncodeOptions, side: f64) -> Self {
+    fn new(mesh: &TriMesh, options: &EncodeOptions, info: &StreamInfo) -> Self {
         let usable = || mesh.triangles().iter().filter(|t| is_usable(t));
-        let in_stream = kept(mesh, options);
         let mut is_used = vec![false; mesh.num_vertices()];
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         usable().flatten().for_each(|&vertex| is_used[vertex as usize] = true);
-        for position in in_stream.positions() {
-            for (axis, &x) in position.iter().enumerate() {
-                low[axis] = low[axis].min(x);
-                high[axis] = high[axis].max(x);
-            }
-        }
-        let longest = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-        let magnitude = low.iter().chain(&high).fold(longest, |m, x| m.max(x.abs()));
-        let is_close = (side - longest).abs() <= 8.0 * f64::EPSILON * magnitude;
-        let mut quantized = Self {
-            origin: low,
-            side: if is_close { side } else { longest },
-            steps: ((1_u64 << options.quantization_bits) - 1) as f64,
-            num_vertices: is_used.iter().filter(|&&used| used).count(),
-            triangles: Vec::new(),
-        };
-        let cell = |vertex: u32| quantized.cell(mesh.positions()[vertex as usize]);
-        quantized.triangles = sorted(usable().map(|t| t.map(cell)));
-        quantized
-    }
-
-    fn cell(&self, position: [f64; 3]) -> Cell {
-        std::array::from_fn(|axis| {
-            let offset = position[axis] - self.origin[axis];
-            let scaled = offset * self.steps / self.side;
-            // Near the largest double the product overflows where the quotient does not.
-            let scaled = if scaled.is_finite() { scaled } else { offset / self.side * self.steps };
-            if self.side == 0.0 { 0 } else { (scaled + 0.5).floor() as i32 }
-        })
+        let grid = ExpectedGrid::new(kept(mesh, options).positions(), options, info);
+        let cell = |vertex: u32| grid.cell(mesh.positions()[vertex as usize]);
+        let triangles = sorted(usable().map(|t| t.map(cell)));
+        Self { num_vertices: is_used.iter().filter(|&&used| used).count(), triangles, grid }
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// Show a model in the browser, coarse at once and finer while it loads.
 ///
 /// Serves a page on this machine, prints its address and opens it. A mesh (.obj .ply .stl .glb .gltf .las
-/// .laz, or compressed, such as .obj.zst) is encoded first, with default options except those below.
+/// .laz, or compressed, such as .obj.gz) is encoded first, with default options except those below.
 #[derive(Debug, clap::Args)]
 pub struct View {
     /// Stream (.lwc) or mesh to show.

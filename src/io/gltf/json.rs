@@ -52,6 +52,8 @@ pub(super) struct Asset {
     #[serde(deserialize_with = "or_default")]
     pub version: String,
     pub min_version: Option<String>,
+    #[serde(deserialize_with = "or_default")]
+    pub extras: Value,
 }
 
 #[derive(Debug, Deserialize)]
@@ -139,7 +141,21 @@ pub(super) struct Node {
     pub rotation: Option<[f64; 4]>,
     pub scale: Option<[f64; 3]>,
     #[serde(deserialize_with = "or_default")]
-    pub extensions: Extensions,
+    pub extensions: NodeExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub instancing: Option<Instancing>,
+}
+
+/// The mesh of a node in many places: an accessor for each part of their transforms.
+#[derive(Debug, Deserialize)]
+pub(super) struct Instancing {
+    #[serde(default, deserialize_with = "without_nulls")]
+    pub attributes: BTreeMap<String, usize>,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -1,12 +1,19 @@
 //! Materials, textures and images, carried from file to file as they are.
 
-use super::{accessor::Store, json::Document, source::shorten};
+use super::{
+    accessor::Store,
+    json::Document,
+    source::{file_name, shorten},
+};
 use crate::{
-    io::{ReadError, ReadReport},
+    io::{
+        ReadError, ReadReport,
+        beside::{Folder, Image},
+    },
     mesh::GltfMaterials,
 };
 use serde_json::{Map, Value, json};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// The lists of a document that materials refer to each other by.
 const LISTS: [&str; 4] = ["materials", "textures", "images", "samplers"];
@@ -34,6 +41,7 @@ pub(super) fn names(document: &Document) -> Vec<String> {
 pub(super) fn read(
     document: &Document,
     store: &mut Store,
+    folder: &mut Folder,
     report: &mut ReadReport,
 ) -> Result<Option<GltfMaterials>, ReadError> {
     let is_bare = |material: &Map<String, Value>| material.keys().all(|key| key == "name");
@@ -48,9 +56,13 @@ pub(super) fn read(
     }
     let mut embedded = Vec::new();
     let mut images = document.images.clone();
+    let mut index_of = HashMap::new();
     for image in &mut images {
         let view = image.get("bufferView").and_then(Value::as_u64);
-        let Some(view) = view else { continue };
+        let Some(view) = view else {
+            embed(image, folder, &mut index_of, &mut embedded, report);
+            continue;
+        };
         match store.view(view) {
             Some(bytes) => {
                 let bytes = bytes.to_vec();
@@ -81,6 +93,65 @@ pub(super) fn read(
         "extensionsRequired": of_materials(&document.extensions_required),
     });
     Ok(Some(GltfMaterials { json: json.to_string(), images: embedded }))
+}
+
+/// Takes the file that an image names into the document. `index_of`: of those that are in `embedded` already.
+fn embed(
+    image: &mut Map<String, Value>,
+    folder: &mut Folder,
+    index_of: &mut HashMap<String, (usize, &'static str)>,
+    embedded: &mut Vec<Vec<u8>>,
+    report: &mut ReadReport,
+) {
+    let uri = image.get("uri").and_then(Value::as_str).unwrap_or("data:");
+    if uri.starts_with("data:") || !folder.has_textures {
+        return;
+    }
+    let name = file_name(uri).into_owned();
+    let found = match index_of.get(&name) {
+        Some(&found) => found,
+        None => match folder.image(&name) {
+            Ok(Image { media_type, bytes }) => {
+                embedded.push(bytes);
+                (embedded.len() - 1, media_type)
+            }
+            Err(message) => return report.ignore(&format!("image {message}")),
+        },
+    };
+    image.remove("uri");
+    image.insert("bufferView".to_owned(), found.0.into());
+    image.insert("mimeType".to_owned(), found.1.into());
+    image.entry("name").or_insert_with(|| name.as_str().into());
+    index_of.insert(name, found);
+}
+
+/// Takes out all textures, with what refers to them. Returns whether there were any.
+pub(in crate::io) fn strip_textures(carried: &mut GltfMaterials) -> bool {
+    let Ok(Value::Object(mut json)) = serde_json::from_str(&carried.json) else { return false };
+    if json.get("textures").and_then(Value::as_array).is_none_or(Vec::is_empty) {
+        return false;
+    }
+    json.retain(|key, _| !matches!(key.as_str(), "textures" | "images" | "samplers"));
+    for key in EXTENSIONS {
+        if let Some(Value::Array(names)) = json.get_mut(key) {
+            names.retain(|name| !name.as_str().is_some_and(|name| name.contains("_texture_")));
+        }
+    }
+    json.get_mut("materials").into_iter().for_each(forget_textures);
+    *carried = GltfMaterials { json: Value::Object(json).to_string(), images: Vec::new() };
+    true
+}
+
+/// References to textures have names such as `normalTexture`.
+fn forget_textures(value: &mut Value) {
+    match value {
+        Value::Object(fields) => {
+            fields.retain(|key, _| !key.ends_with("Texture"));
+            fields.values_mut().for_each(forget_textures);
+        }
+        Value::Array(list) => list.iter_mut().for_each(forget_textures),
+        _ => {}
+    }
 }
 
 /// The lists for a document, images referring to buffer views that `view` makes of their bytes. What is not of

@@ -6,7 +6,7 @@ use super::{
     json::{Document, Mesh, Primitive},
 };
 use crate::{
-    io::{MeshFile, Place, ReadError, ReadReport, builder::MeshBuilder},
+    io::{MeshFile, Place, ReadError, ReadReport, builder::MeshBuilder, common_type::Layout},
     mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values},
 };
 use std::collections::{BTreeMap, HashMap};
@@ -158,44 +158,51 @@ impl<'a> Gathered<'a> {
                 let message = format!("{} elements for {num_vertices} positions", array.num_elements());
                 return Err(ReadError::syntax(place, format!("{name}: {message}")));
             }
-            let attribute = Attribute {
-                is_normalized: array.is_normalized,
-                ..Attribute::new(
-                    name,
-                    semantic(name, array.num_components),
-                    Domain::Vertex,
-                    array.num_components,
-                    Values::new(array.values.component_type().unwrap_or(ComponentType::F32)),
-                )
-            };
-            let column = self.column(attribute);
-            let first_row = column.attribute.num_entries() as u32;
-            store.claim(4 * (first + num_vertices - column.rows.len()) as u64)?;
-            column.rows.resize(first, NO_ENTRY);
-            column.rows.extend((0..num_vertices as u32).map(|row| first_row + row));
-            column.attribute.values.append(array.values);
+            let is_normalized = array.is_normalized;
+            let semantic = semantic(name, array.num_components);
+            let n = array.num_components;
+            let attribute = Attribute::new(name, semantic, Domain::Vertex, n, array.values);
+            self.append(Attribute { is_normalized, ..attribute }, first, store)?;
         }
         self.blocks.insert(attributes, first as u32);
         Ok(first as u32)
     }
 
-    /// The column for values like those of `attribute`.
-    fn column(&mut self, attribute: Attribute) -> &mut Column {
-        let is_like = |column: &Column| {
-            let known = &column.attribute;
-            (&known.name, known.num_components, known.is_normalized, known.values.component_type())
-                == (
-                    &attribute.name,
-                    attribute.num_components,
-                    attribute.is_normalized,
-                    attribute.values.component_type(),
-                )
+    /// Adds the values of the vertices from `first` on to those of the same name, all in one type.
+    fn append(&mut self, attribute: Attribute, first: usize, store: &mut Store) -> Result<(), ReadError> {
+        // An accessor has numbers.
+        let Some(layout) = Layout::of(&attribute) else { return Ok(()) };
+        let common = |column: &Column| {
+            let known = Layout::of(&column.attribute).filter(|_| column.attribute.name == attribute.name)?;
+            known.common(layout, attribute.semantic)
         };
-        let known = self.columns.iter().position(is_like).unwrap_or_else(|| {
-            self.columns.push(Column { attribute, rows: Vec::new() });
-            self.columns.len() - 1
-        });
-        &mut self.columns[known]
+        let found = self.columns.iter().enumerate().find_map(|(k, column)| Some((k, common(column)?)));
+        let (column, layout) = match found {
+            Some((k, layout)) => (&mut self.columns[k], layout),
+            None => {
+                let Attribute { semantic, num_components, is_normalized, .. } = attribute;
+                let (name, values) = (attribute.name.clone(), attribute.values.emptied());
+                let empty = Attribute::new(name, semantic, Domain::Vertex, num_components, values);
+                let empty = Attribute { is_normalized, ..empty };
+                self.columns.push(Column { attribute: empty, rows: Vec::new() });
+                let last = self.columns.len() - 1;
+                (&mut self.columns[last], layout)
+            }
+        };
+        let num_vertices = attribute.num_entries();
+        store.claim(4 * (first + num_vertices - column.rows.len()) as u64)?;
+        if Layout::of(&column.attribute) != Some(layout) {
+            store.claim((column.attribute.num_entries() * layout.num_bytes()) as u64)?;
+            column.attribute = layout.convert(&column.attribute).into_owned();
+        }
+        if Layout::of(&attribute) != Some(layout) {
+            store.claim((num_vertices * layout.num_bytes()) as u64)?;
+        }
+        let first_row = column.attribute.num_entries() as u32;
+        column.rows.resize(first, NO_ENTRY);
+        column.rows.extend((0..num_vertices as u32).map(|row| first_row + row));
+        column.attribute.values.append(layout.values(attribute));
+        Ok(())
     }
 
     /// Joins the vertices at one place, and says of each attribute whether it has seams.

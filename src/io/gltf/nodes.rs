@@ -1,17 +1,26 @@
 //! The nodes of a scene: which mesh is where.
 
-use super::json::{Document, Node};
+use super::{
+    accessor::Store,
+    gpu_instances,
+    json::{Document, Node},
+    placement::{Transform, placement},
+};
 use crate::{
     io::{Place, ReadError, ReadReport},
     mesh::{IDENTITY, Instance},
 };
 
-/// An affine map: three rows of a 3 × 3 matrix and a translation.
-pub(super) type Transform = [[f64; 4]; 3];
-
 /// The instances of the scene that is to be shown, in the order of a walk over the nodes; of all meshes
 /// where they are if there is no scene.
-pub(super) fn instances(document: &Document, report: &mut ReadReport) -> Result<Vec<Instance>, ReadError> {
+///
+/// A node without a name has that of the nearest ancestor with one, if that holds nothing else; else that of its
+/// mesh, or else that of the ancestor anyway.
+pub(super) fn instances(
+    document: &Document,
+    store: &mut Store,
+    report: &mut ReadReport,
+) -> Result<Vec<Instance>, ReadError> {
     let index = document.scene.unwrap_or(0);
     let Some(scene) = document.scenes.get(index) else {
         if document.scene.is_some() {
@@ -25,48 +34,75 @@ pub(super) fn instances(document: &Document, report: &mut ReadReport) -> Result<
     }
     let mut instances = Vec::new();
     let mut is_visited = vec![false; document.nodes.len()];
-    let mut stack: Vec<(usize, Transform)> = scene.nodes.iter().rev().map(|&node| (node, IDENTITY)).collect();
-    while let Some((index, parent)) = stack.pop() {
+    let visit = |&node: &usize| Visit { node, parent: IDENTITY, named: None };
+    let mut stack: Vec<Visit> = scene.nodes.iter().rev().map(visit).collect();
+    while let Some(Visit { node: index, parent, named }) = stack.pop() {
         let place = Place::Part("node", index);
         let node = document.nodes.get(index).ok_or_else(|| ReadError::syntax(place, "does not exist"))?;
         if std::mem::replace(&mut is_visited[index], true) {
             return Err(ReadError::syntax(place, "is in the scene twice"));
         }
-        if node.extensions.contains_key("EXT_mesh_gpu_instancing") {
-            report.ignore("EXT_mesh_gpu_instancing");
-        }
         let transform = product(&parent, &local(node));
-        if !transform.iter().flatten().all(|entry| entry.is_finite()) {
-            return Err(ReadError::syntax(place, "has a transform that is not finite"));
-        }
+        check_finite(&transform, place)?;
+        let named =
+            if node.name.is_empty() { named } else { Some(Ancestor { name: &node.name, is_alone: true }) };
         if let Some(mesh) = node.mesh {
-            if mesh >= document.meshes.len() {
+            let Some(of_mesh) = document.meshes.get(mesh).map(|mesh| mesh.name.as_str()) else {
                 return Err(ReadError::syntax(place, format!("there is no mesh {mesh}")));
+            };
+            let name = named.map_or("", |ancestor| ancestor.name);
+            let is_named = named.is_some_and(|ancestor| ancestor.is_alone) || of_mesh.is_empty();
+            let name = if is_named { name } else { of_mesh };
+            let instance = |transform| Instance { mesh, name: name.to_owned(), transform };
+            match &node.extensions.instancing {
+                None => instances.push(instance(transform)),
+                Some(instancing) => {
+                    for own in gpu_instances::transforms(instancing, name, place, store, report)? {
+                        let transform = product(&transform, &own);
+                        check_finite(&transform, place)?;
+                        instances.push(instance(transform));
+                    }
+                }
             }
-            let name = if node.name.is_empty() { &document.meshes[mesh].name } else { &node.name };
-            instances.push(Instance { mesh, name: name.clone(), transform });
         }
-        stack.extend(node.children.iter().rev().map(|&child| (child, transform)));
+        let is_only = node.children.len() == 1 && node.mesh.is_none();
+        let named = named.map(|ancestor| Ancestor { is_alone: ancestor.is_alone && is_only, ..ancestor });
+        stack.extend(node.children.iter().rev().map(|&node| Visit { node, parent: transform, named }));
     }
     Ok(instances)
 }
 
-fn local(node: &Node) -> Transform {
-    if let Some(matrix) = &node.matrix {
-        return [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| matrix[4 * column + row]));
+/// A node that is yet to be visited.
+struct Visit<'a> {
+    node: usize,
+    parent: Transform,
+    named: Option<Ancestor<'a>>,
+}
+
+/// The nearest node above, or the node itself, that has a name.
+#[derive(Clone, Copy)]
+struct Ancestor<'a> {
+    name: &'a str,
+    /// Whether it holds nothing but one mesh: its name is that of the mesh there.
+    is_alone: bool,
+}
+
+fn check_finite(transform: &Transform, place: Place) -> Result<(), ReadError> {
+    if transform.iter().flatten().all(|entry| entry.is_finite()) {
+        return Ok(());
     }
-    let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-    let scale = node.scale.unwrap_or([1.0; 3]);
-    let translation = node.translation.unwrap_or_default();
-    let rotation = [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
-        [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
-        [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
-    ];
-    [0, 1, 2].map(|row| {
-        let [a, b, c] = [0, 1, 2].map(|column| rotation[row][column] * scale[column]);
-        [a, b, c, translation[row]]
-    })
+    Err(ReadError::syntax(place, "has a transform that is not finite"))
+}
+
+fn local(node: &Node) -> Transform {
+    match &node.matrix {
+        Some(matrix) => [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| matrix[4 * column + row])),
+        None => placement(
+            node.translation.unwrap_or_default(),
+            node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]),
+            node.scale.unwrap_or([1.0; 3]),
+        ),
+    }
 }
 
 /// First `b`, then `a`.

@@ -1,16 +1,10 @@
 //! The bytes of a file: the container, and the buffers inside and next to it.
 
 use super::json::Document;
-use crate::io::{MAX_FILE_BYTES, Place, ReadError, text::quoted};
+use crate::io::{Place, ReadError, beside::Folder, text::quoted};
 use base64::Engine;
 use serde::{Deserialize, de::IgnoredAny};
-use std::{
-    borrow::Cow,
-    collections::BTreeMap,
-    fs::File,
-    io::Read,
-    path::{Component, Path},
-};
+use std::{borrow::Cow, collections::BTreeMap};
 
 /// Longer names are cut: many nodes may share one.
 const MAX_NAME_BYTES: usize = 1024;
@@ -125,9 +119,8 @@ pub(super) fn shorten(name: &mut String) {
 pub(super) fn load_buffers<'a>(
     document: &Document,
     binary: Option<&'a [u8]>,
-    folder: Option<&Path>,
+    folder: &mut Folder,
 ) -> Result<Vec<Cow<'a, [u8]>>, ReadError> {
-    let mut num_left = MAX_FILE_BYTES;
     let mut buffers = Vec::new();
     for (index, buffer) in document.buffers.iter().enumerate() {
         let place = Place::Part("buffer", index);
@@ -136,9 +129,8 @@ pub(super) fn load_buffers<'a>(
             // Data of an extension; code that needs it gets an error.
             (None, _) => Cow::Borrowed(&[]),
             (Some(uri), _) if uri.starts_with("data:") => Cow::Owned(decode_data(uri, place)?),
-            (Some(uri), _) => Cow::Owned(read_file(uri, folder, buffer.byte_length.min(num_left), place)?),
+            (Some(uri), _) => Cow::Owned(read_file(uri, folder, buffer.byte_length, place)?),
         };
-        num_left = num_left.saturating_sub(bytes.len() as u64);
         if buffer.uri.is_some() && (bytes.len() as u64) < buffer.byte_length {
             let message = format!("{} bytes of {}", bytes.len(), buffer.byte_length);
             return Err(ReadError::syntax(place, message));
@@ -160,23 +152,11 @@ fn decode_data(uri: &str, place: Place) -> Result<Vec<u8>, ReadError> {
     decoded.map_err(|error| ReadError::syntax(place, format!("not base64: {error}")))
 }
 
-/// Reads a file that a document names. It must be in the folder of the document or below: a model from
-/// somewhere has no business elsewhere.
-fn read_file(uri: &str, folder: Option<&Path>, length: u64, place: Place) -> Result<Vec<u8>, ReadError> {
-    let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
-    let refuse = |why: &str| {
-        let message = format!("{} {why}", quoted(name.as_bytes()));
-        ReadError::Unsupported { place, message }
-    };
-    let folder = folder.ok_or_else(|| refuse("is another file, and there is no folder to look for it"))?;
-    let path = Path::new(&*name);
-    if name.contains(':') || !path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir))
-    {
-        return Err(refuse("is not a file in the folder of the model"));
-    }
-    let cannot =
-        |error: std::io::Error| ReadError::syntax(place, format!("{}: {error}", quoted(name.as_bytes())));
-    let mut bytes = Vec::new();
-    File::open(folder.join(path)).map_err(cannot)?.take(length).read_to_end(&mut bytes).map_err(cannot)?;
-    Ok(bytes)
+/// The name of a file that a document refers to.
+pub(super) fn file_name(uri: &str) -> Cow<'_, str> {
+    percent_encoding::percent_decode_str(uri).decode_utf8_lossy()
+}
+
+fn read_file(uri: &str, folder: &mut Folder, length: u64, place: Place) -> Result<Vec<u8>, ReadError> {
+    folder.read(&file_name(uri), length).map_err(|message| ReadError::Unsupported { place, message })
 }

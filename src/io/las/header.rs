@@ -73,6 +73,29 @@ pub(super) fn variable_records<'a>(
     })
 }
 
+/// The records behind the points, up to the first one that does not fit. Version 1.4 has them.
+pub(super) fn extended_records<'a>(
+    header: &Header,
+    bytes: &'a [u8],
+) -> impl Iterator<Item = VariableRecord<'a>> + use<'a> {
+    const HEAD_BYTES: usize = 60;
+    let fields = Fields(bytes);
+    let is_new = fields.bytes(25).is_ok_and(|[minor]| minor == 4) && header.header_bytes >= 247;
+    let start = fields.bytes(235).map(u64::from_le_bytes).ok().and_then(|start| usize::try_from(start).ok());
+    let mut at = start.filter(|&start| is_new && start >= header.data_offset).unwrap_or(bytes.len());
+    let mut num_left = fields.u32(243).unwrap_or(0);
+    std::iter::from_fn(move || {
+        num_left = num_left.checked_sub(1)?;
+        let head = bytes.get(at..)?.get(..HEAD_BYTES)?;
+        let length = u64::from_le_bytes(std::array::from_fn(|k| head[20 + k]));
+        let data = bytes.get(at + HEAD_BYTES..)?.get(..usize::try_from(length).ok()?)?;
+        let id = u16::from_le_bytes([head[18], head[19]]);
+        let record = VariableRecord { at, user: &head[2..18], id, data };
+        at += HEAD_BYTES + data.len();
+        Some(record)
+    })
+}
+
 /// Where the record of a format has its colour, if it has one, and the least bytes of a record.
 pub(super) fn layout(format: u8) -> Option<(Option<usize>, usize)> {
     Some(match format {

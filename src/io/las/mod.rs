@@ -6,6 +6,7 @@
 
 mod columns;
 mod compressed;
+mod crs;
 mod gps_time;
 mod header;
 mod points;
@@ -17,6 +18,7 @@ use crate::mesh::{Attribute, Domain, Semantic, Values};
 use columns::Column;
 use points::{Cloud, Point};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
+use std::collections::HashSet;
 
 /// Which points of a cloud become vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -71,6 +73,8 @@ pub(super) fn read(bytes: &[u8], options: &TerrainOptions) -> Result<MeshFile, R
     let position = |point: &Point| [0, 1, 2].map(|k| f64::from(point.grid[k]) * scale[k] + offset[k]);
     builder.positions = points.iter().map(position).collect();
     builder.attributes.list = attributes(&points, cloud.has_colour, &cloud.columns);
+    let header = header::read_header(bytes)?;
+    builder.attributes.metadata = crs::metadata(&header, bytes, &mut builder.report).into();
     builder.report.ignore("returns, angles, times and sources of points");
     if cloud.has_other_bytes {
         builder.report.ignore("extra bytes");
@@ -99,8 +103,25 @@ fn attributes(points: &[Point], has_colour: bool, columns: &[Column]) -> Vec<Att
         let colour = of_vertices("red green blue", Semantic::Color(0), 3, colours(points));
         list.push(Attribute { is_normalized: true, ..colour });
     }
-    list.extend(columns.iter().map(|column| column.attribute(points.iter().map(|point| point.index))));
+    let mut taken: HashSet<String> = TAKEN.iter().map(|&name| name.to_owned()).collect();
+    for column in columns {
+        let attribute = column.attribute(points.iter().map(|point| point.index));
+        let name = free_name(&attribute.name, &taken);
+        taken.insert(name.clone());
+        list.push(Attribute { name, ..attribute });
+    }
     list
+}
+
+/// What other formats would have twice.
+const TAKEN: [&str; 9] =
+    ["x", "y", "z", "classification", "intensity", "red", "green", "blue", "red green blue"];
+
+/// A described field may have any name.
+fn free_name(name: &str, taken: &HashSet<String>) -> String {
+    let numbered = (2..).map(|k| format!("{name}_{k}"));
+    let mut names = std::iter::once(name.to_owned()).chain(numbered);
+    names.find(|name| !taken.contains(name)).unwrap_or_default()
 }
 
 /// Colours in 16 bits; in 8 where none is larger, since some scanners store 0 to 255 in fields of 16 bits.

@@ -171,16 +171,21 @@ impl Gathered {
         report: &mut ReadReport,
     ) -> Result<(), &'static str> {
         let mut colour = None;
-        match [(); 4].map(|()| words.next()) {
+        let channel = |word| number(word).ok_or("a colour needs three numbers");
+        let mut weight = None;
+        match [(); 5].map(|()| words.next()) {
             [None, ..] => {}
-            [Some(r), Some(g), Some(b), None] => {
-                let channel = |word| number(word).ok_or("a colour needs three numbers");
+            [Some(r), Some(g), Some(b), None, _] => colour = Some([channel(r)?, channel(g)?, channel(b)?]),
+            [Some(w), Some(r), Some(g), Some(b), None] => {
+                weight = Some(w);
                 colour = Some([channel(r)?, channel(g)?, channel(b)?]);
             }
-            // The weight that all have who say nothing.
-            [Some(weight), None, ..] if number(weight) == Some(1.0) => {}
-            [Some(_), None, ..] => report.ignore("weights of vertices"),
+            [Some(w), None, ..] => weight = Some(w),
             _ => report.ignore("v.more"),
+        }
+        // All have the weight 1 who say nothing.
+        if weight.is_some_and(|weight| number(weight) != Some(1.0)) {
+            report.ignore("weights of vertices");
         }
         self.colours.vertex(colour);
         Ok(())

@@ -7,15 +7,19 @@
 
 mod colours;
 mod corner_tables;
+mod layout;
+#[cfg(feature = "gltf")]
+mod mtl;
 mod references;
 mod rows;
 mod statements;
 mod write;
 
-pub(super) use write::write;
+pub(super) use write::Plan;
 
 use super::{
     MeshFile, Place, ReadError,
+    beside::Folder,
     builder::MeshBuilder,
     source::Source,
     text::{parse_number, quoted},
@@ -27,15 +31,21 @@ use statements::{COLOURS, Statement, Statements};
 /// The longest word that is passed over as a statement we do not know; anything else is damage.
 const MAX_KEYWORD_BYTES: usize = 32;
 
-/// Reads an OBJ file. Points, lines, curves and surfaces are ignored.
-pub(super) fn read(source: &mut Source) -> Result<MeshFile, ReadError> {
+/// Reads an OBJ file, and the materials that it uses from the libraries in `folder`. Points, lines, curves and
+/// surfaces are ignored.
+#[cfg_attr(not(feature = "gltf"), allow(unused_variables))]
+pub(super) fn read(source: &mut Source, folder: &mut Folder) -> Result<MeshFile, ReadError> {
     let mut parser = Parser::default();
     let mut statements = Statements::new(source);
     while let Some(statement) = statements.next() {
         parser.take(&statement).map_err(|fault| fault.in_statement(&statement))?;
     }
     parser.builder.num_bytes = source.offset();
-    parser.finish()
+    #[cfg_attr(not(feature = "gltf"), allow(unused_mut))]
+    let mut file = parser.finish()?;
+    #[cfg(feature = "gltf")]
+    mtl::attach(&mut file, folder);
+    Ok(file)
 }
 
 /// What is wrong with a statement.

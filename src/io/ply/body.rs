@@ -123,7 +123,7 @@ impl<'s, 'a> Body<'s, 'a> {
         self.rest = self.word.end + blanks;
         let number = parse_number(self.word()).ok_or(Fault::NotANumber)?;
         let fits = !scalar.is_integer() || is_whole(number);
-        if fits { Ok(number) } else { Err(Fault::NotANumber) }
+        if fits { Ok(scalar.rounded(number, self.word())) } else { Err(Fault::NotANumber) }
     }
 
     fn word(&self) -> &[u8] {

@@ -104,13 +104,13 @@ pub(super) fn property_names(attribute: &Attribute) -> Vec<String> {
     (0..num_components).map(|k| format!("{stem}_{k}")).collect()
 }
 
-/// What PLY calls a type.
+/// What PLY calls a type. The names with bits are as old as `short` and `ushort`, which meshio does not know.
 pub(super) fn scalar_name(scalar: ComponentType) -> &'static str {
     match scalar {
         ComponentType::I8 => "char",
         ComponentType::U8 => "uchar",
-        ComponentType::I16 => "short",
-        ComponentType::U16 => "ushort",
+        ComponentType::I16 => "int16",
+        ComponentType::U16 => "uint16",
         ComponentType::I32 => "int",
         ComponentType::U32 => "uint",
         ComponentType::F32 => "float",

@@ -32,8 +32,10 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Comments that are no mere comments: names of textures.
+    /// Comments that are no mere comments: files of textures, in the order in which `texnumber` counts them.
     pub textures: Vec<String>,
+    /// Coordinate reference systems in comments, as they are written here: key and text.
+    pub metadata: Vec<(String, String)>,
 }
 
 impl Header {
@@ -59,6 +61,7 @@ pub(super) fn read_header(source: &mut Source) -> Result<Header, ReadError> {
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
     let mut textures = Vec::new();
+    let mut metadata = Vec::new();
     while let Some(Line { number, text: line, is_cut }) = source.line() {
         if is_cut && line != b"end_header" {
             break;
@@ -68,6 +71,7 @@ pub(super) fn read_header(source: &mut Source) -> Result<Header, ReadError> {
         let words: Vec<&[u8]> = words(line).take(6).collect();
         match words[..] {
             [b"comment", b"TextureFile", ..] => textures.push(texture(line)),
+            [b"comment", key, _, ..] if key.starts_with(b"crs.") => add_metadata(&mut metadata, key, line),
             [] | [b"comment" | b"obj_info", ..] => {}
             [b"format", name, version] => encoding = Some(parse_encoding(name, version, place)?),
             [b"element", name, count] => {
@@ -87,7 +91,7 @@ pub(super) fn read_header(source: &mut Source) -> Result<Header, ReadError> {
             [b"end_header"] => {
                 let encoding =
                     encoding.ok_or_else(|| ReadError::syntax(place, "the header names no format"))?;
-                return Ok(Header { encoding, elements, textures });
+                return Ok(Header { encoding, elements, textures, metadata });
             }
             _ => return Err(bad("not a line of a PLY header")),
         }
@@ -95,11 +99,26 @@ pub(super) fn read_header(source: &mut Source) -> Result<Header, ReadError> {
     Err(ReadError::syntax(Place::Line(source.num_lines()), "the file ends in the header"))
 }
 
-/// `comment TextureFile skin.png` without its first word, fit for a message.
+/// The name in `comment TextureFile skin.png`.
 fn texture(line: &[u8]) -> String {
-    let line = line.trim_ascii_start();
-    let name = line.strip_prefix(b"comment").unwrap_or(line).trim_ascii_start();
-    format!("TextureFile {}", quoted(name.strip_prefix(b"TextureFile").unwrap_or(name)))
+    let after = |text: &'_ [u8], word: &[u8]| text.trim_ascii_start().strip_prefix(word).map(<[u8]>::to_vec);
+    let name = after(line, b"comment").and_then(|rest| after(&rest, b"TextureFile")).unwrap_or_default();
+    clean_name(name.trim_ascii())
+}
+
+/// Keys of which a file has one each, and bytes of their texts.
+const MAX_KEYS: usize = 16;
+const MAX_METADATA_BYTES: usize = 1 << 16;
+
+/// `comment crs.wkt PROJCS[…]`: the first of each key.
+fn add_metadata(metadata: &mut Vec<(String, String)>, key: &[u8], line: &[u8]) {
+    let name = clean_name(key);
+    let Some(at) = line.windows(key.len()).position(|word| word == key) else { return };
+    let text = clean_name(line[at + key.len()..].trim_ascii());
+    let is_new = metadata.iter().all(|(known, _)| *known != name);
+    if is_new && metadata.len() < MAX_KEYS && text.len() <= MAX_METADATA_BYTES {
+        metadata.push((name, text));
+    }
 }
 
 fn parse_encoding(name: &[u8], version: &[u8], place: Place) -> Result<Encoding, ReadError> {

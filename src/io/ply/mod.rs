@@ -11,24 +11,26 @@
 mod body;
 mod columns;
 mod header;
+mod layout;
 mod scalar;
+mod textures;
 mod write;
 
-pub(super) use write::write;
+pub(super) use textures::TEXTURE_FILE;
+pub(super) use write::Plan;
 
-use super::{MeshFile, ReadError, builder::MeshBuilder, builder::fan, source::Source};
+use super::{MeshFile, ReadError, beside::Folder, builder::MeshBuilder, builder::fan, source::Source};
 use crate::mesh::{Attribute, Domain, NO_ENTRY, Semantic, Values};
 use body::Body;
 use columns::attributes_of;
 use header::{Element, Property, read_header};
 
-/// Reads a PLY file. Elements other than `vertex`, `face` and `tristrips` are skipped.
-pub(super) fn read(source: &mut Source) -> Result<MeshFile, ReadError> {
+/// Reads a PLY file, and the images of its textures from `folder`. Elements other than `vertex`, `face` and `tristrips` are skipped.
+pub(super) fn read(source: &mut Source, folder: &mut Folder) -> Result<MeshFile, ReadError> {
     let header = read_header(source)?;
     let mut body = Body::new(header.encoding, source);
     let num_vertices = header.num_vertices()?;
     let mut builder = MeshBuilder::default();
-    header.textures.iter().for_each(|name| builder.report.ignore(name));
     let mut is_first = true;
     for element in &header.elements {
         match element.name.as_str() {
@@ -49,7 +51,10 @@ pub(super) fn read(source: &mut Source) -> Result<MeshFile, ReadError> {
         builder.report.ignore("the last digits of integers beyond 53 bits");
     }
     builder.num_bytes = body.offset();
-    builder.finish()
+    builder.attributes.metadata = header.metadata.into();
+    let mut file = builder.finish()?;
+    textures::attach(&mut file, header.textures, folder);
+    Ok(file)
 }
 
 fn read_vertices(body: &mut Body, element: &Element, builder: &mut MeshBuilder) -> Result<(), ReadError> {

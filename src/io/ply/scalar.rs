@@ -46,6 +46,15 @@ impl Scalar {
         }
     }
 
+    /// A number of a text as the type has it: that of `float` is the float32 that has these digits. If none has, whoever
+    /// wrote it had more than a float32, and it stays.
+    #[inline]
+    pub fn rounded(self, number: f64, word: &[u8]) -> f64 {
+        let float = f64::from(number as f32);
+        let is_other = self.kept == ComponentType::F32 && float != number;
+        if is_other && (float - number).abs() <= 0.5 * unit_of(word) { float } else { number }
+    }
+
     /// Whether an integer is one of the type it is kept in.
     #[inline]
     pub fn fits(self, number: f64) -> bool {
@@ -62,6 +71,17 @@ impl Scalar {
     }
 }
 
+/// What a number of 1 in the last digit of a decimal stands for.
+fn unit_of(word: &[u8]) -> f64 {
+    let at = word.iter().position(|byte| matches!(byte, b'e' | b'E'));
+    let (digits, exponent) = at.map_or((word, &[][..]), |at| (&word[..at], &word[at + 1..]));
+    let point = digits.iter().position(|&byte| byte == b'.');
+    let num_decimals = point.map_or(0, |point| digits.len() - point - 1);
+    let exponent = std::str::from_utf8(exponent).ok().and_then(|text| text.parse::<i32>().ok()).unwrap_or(0);
+    let num_decimals = i32::try_from(num_decimals).unwrap_or(i32::MAX);
+    10f64.powi(exponent.saturating_sub(num_decimals))
+}
+
 /// Adds an integer of 64 bits.
 pub(super) fn push_wide(values: &mut Values, scalar: Scalar, number: f64) {
     if values.component_type() != Some(ComponentType::F64) {
@@ -72,4 +92,23 @@ pub(super) fn push_wide(values: &mut Values, scalar: Scalar, number: f64) {
         *values = Values::F64(known.collect());
     }
     values.push_bits(number.to_bits());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_of_float32_are_float32() {
+        let float = Scalar::from_name(b"float").unwrap();
+        let rounded = |text: &str| float.rounded(text.parse().unwrap(), text.as_bytes());
+        for text in ["0.1", "-1.1e-3", "3.14159274", "1e10", "0.30000001"] {
+            assert_eq!(rounded(text), f64::from(text.parse::<f32>().unwrap()), "{text}");
+        }
+        for text in ["5500000.001", "1e-300", "1e39", "0.1000000000", "16777217"] {
+            assert_eq!(rounded(text), text.parse::<f64>().unwrap(), "{text}");
+        }
+        let double = Scalar::from_name(b"double").unwrap();
+        assert_eq!(double.rounded(0.1, b"0.1"), 0.1);
+    }
 }

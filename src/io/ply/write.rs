@@ -1,126 +1,130 @@
 //! Writing PLY: binary, little-endian.
 
-use super::columns::{property_names, scalar_name};
+use super::columns::scalar_name;
+use super::layout::{Column, Layout};
+use super::textures::TEXTURE_FILE;
 use crate::{
-    io::{WriteReport, texture::oriented},
-    mesh::{Attribute, Attributes, ComponentType, Domain, Semantic, TriMesh, Values},
+    io::{
+        WriteError, WriteOptions,
+        convert::{check_float32, is_float32, loss_of, rounding},
+    },
+    losses::Losses,
+    mesh::{Attribute, Attributes, ComponentType, TriMesh},
 };
 use std::{
     borrow::Cow,
     io::{self, Write},
 };
 
-/// Writes `mesh` and those of its (valid) attributes that PLY can hold, and says which it cannot.
-pub(in crate::io) fn write(
-    out: &mut impl Write,
-    mesh: &TriMesh,
-    attributes: &Attributes,
-) -> io::Result<WriteReport> {
-    let (layout, report) = Layout::new(mesh, attributes);
-    let is_float = mesh.positions().iter().flatten().all(|&c| f64::from(c as f32) == c);
-    let coordinate = if is_float { "float" } else { "double" };
-    // Many readers know `int` only; it reaches far enough nearly always.
-    let index = if mesh.num_vertices() <= i32::MAX as usize { "int" } else { "uint" };
-    write!(
-        out,
-        "ply\nformat binary_little_endian 1.0\n\
-         element vertex {}\nproperty {coordinate} x\nproperty {coordinate} y\nproperty {coordinate} z\n",
-        mesh.num_vertices(),
-    )?;
-    declare(out, &layout.of_vertices)?;
-    write!(out, "element face {}\nproperty list uchar {index} vertex_indices\n", mesh.num_triangles())?;
-    if let Some(wedge) = &layout.wedge {
-        writeln!(out, "property list uchar {} texcoord", scalar_name(number_type(wedge)))?;
-    }
-    declare(out, &layout.of_faces)?;
-    out.write_all(b"end_header\n")?;
+/// A file that can be written.
+pub(in crate::io) struct Plan<'a> {
+    mesh: Cow<'a, TriMesh>,
+    layout: Layout<'a>,
+    metadata: &'a [(String, String)],
+    is_float: bool,
+}
 
-    for (vertex, position) in mesh.positions().iter().enumerate() {
+impl<'a> Plan<'a> {
+    /// Chooses names and types for `mesh` and those of its (valid) attributes that PLY can hold, and says what is lost.
+    ///
+    /// # Errors
+    /// If positions do not fit the type that the options want, or there are too many vertices after splitting.
+    pub fn new(
+        mesh: &'a TriMesh,
+        attributes: &'a Attributes,
+        options: &WriteOptions,
+        losses: &mut Losses,
+    ) -> Result<Self, WriteError> {
+        let is_float = is_float32(mesh, options);
         if is_float {
-            out.write_all(position.map(|c| (c as f32).to_le_bytes()).as_flattened())?;
-        } else {
-            out.write_all(position.map(f64::to_le_bytes).as_flattened())?;
+            check_float32(mesh, "PLY")?;
+            let remedy = "`--position-type double` keeps them";
+            losses.append(rounding(mesh, [0.0; 3]).map(|r| loss_of(r, mesh, remedy)).into_iter().collect());
         }
-        layout
-            .of_vertices
-            .iter()
-            .try_for_each(|attribute| write_row(out, attribute, attribute.entry(vertex)))?;
+        let (mesh, layout) = Layout::new(mesh, attributes, options, losses)?;
+        Ok(Self { mesh, layout, metadata: &attributes.metadata, is_float })
     }
-    for (t, triangle) in mesh.triangles().iter().enumerate() {
-        let mut face = [3; 13];
-        face[1..].copy_from_slice(triangle.map(u32::to_le_bytes).as_flattened());
-        out.write_all(&face)?;
-        if let Some(wedge) = &layout.wedge {
-            write_wedge(out, wedge, [0, 1, 2].map(|corner| wedge.entry(3 * t + corner)))?;
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// If `out` fails.
+    pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        self.write_header(out)?;
+        self.write_vertices(out)?;
+        self.write_faces(out)
+    }
+
+    fn write_header(&self, out: &mut impl Write) -> io::Result<()> {
+        let coordinate = if self.is_float { "float" } else { "double" };
+        // Many readers know `int` only; it reaches far enough nearly always.
+        let index = if self.mesh.num_vertices() <= i32::MAX as usize { "int" } else { "uint" };
+        let num_vertices = self.mesh.num_vertices();
+        out.write_all(b"ply\nformat binary_little_endian 1.0\n")?;
+        self.write_comments(out)?;
+        writeln!(out, "element vertex {num_vertices}")?;
+        ["x", "y", "z"].iter().try_for_each(|axis| writeln!(out, "property {coordinate} {axis}"))?;
+        declare(out, &self.layout.of_vertices)?;
+        let num_triangles = self.mesh.num_triangles();
+        write!(out, "element face {num_triangles}\nproperty list uchar {index} vertex_indices\n")?;
+        if let Some(wedge) = &self.layout.wedge {
+            writeln!(out, "property list uchar {} texcoord", scalar_name(number_type(wedge)))?;
         }
-        layout.of_faces.iter().try_for_each(|attribute| write_row(out, attribute, attribute.entry(t)))?;
+        declare(out, &self.layout.of_faces)?;
+        out.write_all(b"end_header\n")
     }
-    Ok(report)
-}
 
-/// Which attribute goes where.
-#[derive(Default)]
-struct Layout<'a> {
-    of_vertices: Vec<Cow<'a, Attribute>>,
-    of_faces: Vec<Cow<'a, Attribute>>,
-    /// Texture coordinates of corners: a list in each face.
-    wedge: Option<Cow<'a, Attribute>>,
-}
+    fn write_comments(&self, out: &mut impl Write) -> io::Result<()> {
+        for name in self.layout.textures {
+            writeln!(out, "comment {TEXTURE_FILE} {}", one_line(name))?;
+        }
+        for (key, text) in self.metadata {
+            writeln!(out, "comment {} {}", one_line(key), one_line(text))?;
+        }
+        Ok(())
+    }
 
-impl<'a> Layout<'a> {
-    fn new(mesh: &TriMesh, attributes: &'a Attributes) -> (Self, WriteReport) {
-        let mut layout = Self::default();
-        let mut report = WriteReport::default();
-        for attribute in &attributes.list {
-            let may_be_wedge = layout.wedge.is_none()
-                && matches!(attribute.semantic, Semantic::TexCoord(_))
-                && attribute.num_components == 2
-                && !number_type(attribute).is_integer();
-            let came_as_wedge = attribute.name == "texcoord" && may_be_wedge;
-            match attribute.domain {
-                _ if attribute.values.names().is_some() => report.ignored.push(attribute.name.clone()),
-                Domain::Vertex => layout.of_vertices.push(written_as(Cow::Borrowed(attribute))),
-                Domain::Triangle => layout.of_faces.push(written_as(Cow::Borrowed(attribute))),
-                Domain::Corner => match attribute.without_seams(mesh).filter(|_| !came_as_wedge) {
-                    Some(smooth) => layout.of_vertices.push(written_as(Cow::Owned(smooth))),
-                    None if may_be_wedge => layout.wedge = Some(written_as(Cow::Borrowed(attribute))),
-                    None => report.ignored.push(attribute.name.clone()),
-                },
+    fn write_vertices(&self, out: &mut impl Write) -> io::Result<()> {
+        for (vertex, position) in self.mesh.positions().iter().enumerate() {
+            if self.is_float {
+                out.write_all(position.map(|c| (c as f32).to_le_bytes()).as_flattened())?;
+            } else {
+                out.write_all(position.map(f64::to_le_bytes).as_flattened())?;
             }
+            let mut columns = self.layout.of_vertices.iter().map(|column| &column.attribute);
+            columns.try_for_each(|attribute| write_row(out, attribute, attribute.entry(vertex)))?;
         }
-        report.ignored.extend(attributes.material_libraries.first().map(|_| "mtllib".to_owned()));
-        let columns = layout.of_vertices.iter().chain(&layout.of_faces);
-        let has_gaps = |a: &&Cow<Attribute>| (0..a.domain.num_elements(mesh)).any(|e| a.entry(e).is_none());
-        report.zeroed = columns.filter(has_gaps).map(|a| a.name.clone()).collect();
-        (layout, report)
+        Ok(())
+    }
+
+    fn write_faces(&self, out: &mut impl Write) -> io::Result<()> {
+        for (t, triangle) in self.mesh.triangles().iter().enumerate() {
+            let mut face = [3; 13];
+            face[1..].copy_from_slice(triangle.map(u32::to_le_bytes).as_flattened());
+            out.write_all(&face)?;
+            if let Some(wedge) = &self.layout.wedge {
+                write_wedge(out, wedge, [0, 1, 2].map(|corner| wedge.entry(3 * t + corner)))?;
+            }
+            let mut columns = self.layout.of_faces.iter().map(|column| &column.attribute);
+            columns.try_for_each(|attribute| write_row(out, attribute, attribute.entry(t)))?;
+        }
+        Ok(())
     }
 }
 
-/// Integers that stand for fractions are understood as such in colours only: others become float32.
-fn written_as(attribute: Cow<'_, Attribute>) -> Cow<'_, Attribute> {
-    let attribute = match oriented(&attribute, false) {
-        Cow::Owned(turned) => Cow::Owned(turned),
-        Cow::Borrowed(_) => attribute,
-    };
-    if !attribute.is_normalized || matches!(attribute.semantic, Semantic::Color(_)) {
-        return attribute;
-    }
-    let number = |k: usize| {
-        attribute.number(k / attribute.num_components, k % attribute.num_components).unwrap_or(0.0) as f32
-    };
-    let values = Values::F32((0..attribute.values.len()).map(number).collect());
-    Cow::Owned(Attribute { values, is_normalized: false, ..attribute.into_owned() })
+/// A comment ends where its line ends.
+fn one_line(text: &str) -> String {
+    text.replace(['\n', '\r'], " ")
 }
 
 fn number_type(attribute: &Attribute) -> ComponentType {
     attribute.values.component_type().unwrap_or(ComponentType::F32)
 }
 
-fn declare(out: &mut impl Write, attributes: &[Cow<Attribute>]) -> io::Result<()> {
-    for attribute in attributes {
-        for name in property_names(attribute) {
-            writeln!(out, "property {} {name}", scalar_name(number_type(attribute)))?;
-        }
+fn declare(out: &mut impl Write, columns: &[Column]) -> io::Result<()> {
+    for Column { attribute, names } in columns {
+        let scalar = scalar_name(number_type(attribute));
+        names.iter().try_for_each(|name| writeln!(out, "property {scalar} {name}"))?;
     }
     Ok(())
 }

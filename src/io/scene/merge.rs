@@ -1,16 +1,20 @@
 //! One mesh of all meshes of a scene.
 
-use super::Scene;
+use super::{Scene, unify::Layouts};
 use crate::{
     io::{MeshFile, ReadError, builder::MeshBuilder},
     mesh::{Attribute, Domain, IDENTITY, Instance, NO_ENTRY, Semantic, Values},
 };
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 /// Vertices and triangles of all instances for each byte of the file, and in any file: a thousand trees are
 /// one tree in the file, a billion are an attack.
 const MAX_ELEMENTS_PER_BYTE: usize = 16;
 const MIN_MAX_ELEMENTS: usize = 1 << 20;
+
+/// Keys of the metadata of all meshes.
+const MAX_KEYS: usize = 64;
 
 impl Scene {
     /// One mesh of all instances in their places. If there are several, each triangle says which it belongs
@@ -30,13 +34,16 @@ impl Scene {
         }
         self.check_size()?;
         let mut merger = Merger::new(&self);
+        let layouts = Layouts::of(&self);
+        let is_moved = self.instances.iter().any(|instance| instance.transform != IDENTITY);
+        let layouts = if is_moved { layouts.turning() } else { layouts };
         let mut is_used = vec![false; self.meshes.len()];
         for instance in &self.instances {
             let motion = match instance.transform {
                 IDENTITY => Motion::Scaling(1.0),
                 transform => Motion::Affine(transform),
             };
-            merger.add(&self.meshes[instance.mesh], &instance.name, motion)?;
+            merger.add(&layouts.convert(&self.meshes[instance.mesh]), &instance.name, motion)?;
             is_used[instance.mesh] = true;
         }
         if is_used.contains(&false) {
@@ -92,6 +99,28 @@ impl Motion {
 pub(super) struct Merger {
     builder: MeshBuilder,
     columns: Vec<Column>,
+    /// Each once, in order of appearance.
+    libraries: IndexedNames,
+    /// Of several texts for a key the first.
+    metadata: Vec<(String, String)>,
+}
+
+/// Names, each once.
+#[derive(Default)]
+struct IndexedNames {
+    list: Vec<String>,
+    known: HashSet<String>,
+    /// What was added last: all meshes of a stream share it.
+    last: Arc<[String]>,
+}
+
+impl IndexedNames {
+    fn add(&mut self, names: &Arc<[String]>) {
+        if !Arc::ptr_eq(&self.last, names) {
+            self.last = names.clone();
+            self.list.extend(names.iter().filter(|&name| self.known.insert(name.clone())).cloned());
+        }
+    }
 }
 
 /// An attribute of all instances, by corners or triangles: an instance may have a seam where another has none.
@@ -125,15 +154,18 @@ impl Merger {
         let mut builder = MeshBuilder::for_file(scene.num_bytes);
         builder.report = scene.report.clone();
         builder.attributes.gltf_materials.clone_from(&scene.gltf_materials);
-        Self { builder, columns: Vec::new() }
+        Self { builder, columns: Vec::new(), libraries: IndexedNames::default(), metadata: Vec::new() }
     }
 
     /// Adds a mesh; `name` is for errors.
     pub(super) fn add(&mut self, file: &MeshFile, name: &str, motion: Motion) -> Result<(), ReadError> {
         let MeshFile { mesh, attributes, report } = file;
+        self.libraries.add(&attributes.material_libraries);
+        self.add_metadata(&attributes.metadata);
         let builder = &mut self.builder;
         report.ignored.iter().for_each(|name| builder.report.ignore(name));
         builder.report.polygons_triangulated += report.polygons_triangulated;
+        builder.report.polygons_overlapping += report.polygons_overlapping;
         builder.report.faces_skipped += report.faces_skipped;
         builder.report.corners_welded += report.corners_welded;
         let is_mirrored = matches!(motion, Motion::Affine(transform) if determinant(&transform) < 0.0);
@@ -154,6 +186,7 @@ impl Merger {
         for attribute in &attributes.list {
             let turned;
             let attribute = match motion {
+                Motion::Affine(transform) if is_translation(&transform) => attribute,
                 Motion::Affine(transform) if attribute.semantic == Semantic::Normal => {
                     turned = turned_normals(attribute, &transform);
                     &turned
@@ -167,6 +200,17 @@ impl Merger {
             self.add_attribute(file, attribute, num_before, corners)?;
         }
         Ok(())
+    }
+
+    /// A file has few keys; what the meshes of a stream have is the same.
+    fn add_metadata(&mut self, metadata: &[(String, String)]) {
+        for (key, text) in metadata.iter().take(MAX_KEYS) {
+            match self.metadata.iter().find(|(known, _)| known == key) {
+                None if self.metadata.len() < MAX_KEYS => self.metadata.push((key.clone(), text.clone())),
+                Some((_, known)) if known == text => {}
+                _ => self.builder.report.ignore(&format!("another {key}")),
+            }
+        }
     }
 
     fn add_attribute(
@@ -227,6 +271,8 @@ impl Merger {
         for Column { attribute, rows, .. } in self.columns {
             self.builder.attributes.list.push(Attribute { indices: Some(rows), ..attribute });
         }
+        self.builder.attributes.metadata = self.metadata.into();
+        self.builder.attributes.material_libraries = self.libraries.list.into();
         let mut file = self.builder.finish()?;
         // Where no instance has a seam, corners are more than is needed.
         for attribute in &mut file.attributes.list {
@@ -236,6 +282,11 @@ impl Merger {
         }
         Ok(file)
     }
+}
+
+/// Directions stay as they are then, bit for bit.
+fn is_translation(transform: &[[f64; 4]; 3]) -> bool {
+    transform.iter().zip(&IDENTITY).all(|(row, identity)| row[..3] == identity[..3])
 }
 
 fn determinant([[a, b, c, _], [d, e, f, _], [g, h, i, _]]: &[[f64; 4]; 3]) -> f64 {

@@ -1,6 +1,6 @@
 //! A scene as one mesh, and back: what a stream holds.
 
-use super::{Scene, merge::Merger, merge::Motion};
+use super::{Scene, merge::Merger, merge::Motion, unify::Layouts};
 use crate::{
     io::{MeshFile, ReadError, ReadReport},
     mesh::{Attribute, Attributes, Domain, NO_ENTRY, SceneTable, TriMesh, Values},
@@ -19,9 +19,11 @@ impl Scene {
     pub fn pack(&self) -> Result<MeshFile, ReadError> {
         let exponents: Vec<i8> = (0..self.meshes.len()).map(|mesh| self.exponent(mesh)).collect();
         let mut merger = Merger::new(self);
+        let layouts = Layouts::of(self);
         for (mesh, (file, &exponent)) in self.meshes.iter().zip(&exponents).enumerate() {
             let name = || self.instances.iter().find(|i| i.mesh == mesh).map(|i| i.name.as_str());
-            merger.add(file, name().unwrap_or_default(), Motion::Scaling(power_of_two(exponent)))?;
+            let file = layouts.convert(file);
+            merger.add(&file, name().unwrap_or_default(), Motion::Scaling(power_of_two(exponent)))?;
         }
         if self.meshes.len() > 1 {
             let numbers = Values::U32((0..self.meshes.len() as u32).collect());
@@ -73,6 +75,7 @@ impl Scene {
         for (part, &exponent) in parts.iter().zip(&table.exponents) {
             let mut file = part.extract(mesh, &listed, power_of_two(exponent).recip(), &mut names)?;
             file.attributes.material_libraries = attributes.material_libraries.clone();
+            file.attributes.metadata = attributes.metadata.clone();
             meshes.push(file);
         }
         Ok(Some(Self {
@@ -80,6 +83,7 @@ impl Scene {
             instances: table.instances.clone(),
             gltf_materials: attributes.gltf_materials.clone(),
             report: ReadReport::default(),
+            scales: table.exponents.iter().map(|&exponent| power_of_two(exponent).recip()).collect(),
             num_bytes,
         }))
     }

@@ -1,16 +1,12 @@
 //! STL in binary: a comment of 80 bytes, the number of triangles in 4 bytes, the triangles.
 
 use super::weld::Welder;
-use crate::{
-    io::{MeshFile, Place, ReadError, WriteError, source::Source},
-    mesh::TriMesh,
-};
-use std::io::Write;
+use crate::io::{MeshFile, Place, ReadError, source::Source};
 
 /// The comment and the number of triangles.
 pub(super) const HEADER_BYTES: usize = 84;
 /// Normal and three corners, each three float32, and two bytes of whatever.
-const TRIANGLE_BYTES: usize = 50;
+pub(super) const TRIANGLE_BYTES: usize = 50;
 
 /// The number of triangles that a header declares.
 pub(super) fn num_triangles(header: &[u8; HEADER_BYTES]) -> u32 {
@@ -64,37 +60,4 @@ fn add_triangle(welder: &mut Welder, record: &[u8], place: Place) -> Result<(), 
     }
     welder.builder.triangles.push(triangle);
     Ok(())
-}
-
-/// Writes a binary file. Coordinates are rounded to float32.
-pub(in crate::io) fn write(out: &mut impl Write, mesh: &TriMesh) -> Result<(), WriteError> {
-    if let Some(vertex) = mesh.positions().iter().position(|p| p.iter().any(|&c| (c as f32).is_infinite())) {
-        let message = format!("vertex {} is too far away for the float32 coordinates of STL", vertex + 1);
-        return Err(WriteError::Unrepresentable { message });
-    }
-    // Must not begin with `solid`, the mark of a text.
-    let mut header = [b' '; HEADER_BYTES];
-    header[..10].copy_from_slice(b"binary STL");
-    header[80..].copy_from_slice(&(mesh.num_triangles() as u32).to_le_bytes());
-    out.write_all(&header)?;
-    for triangle in mesh.triangles() {
-        let corners = triangle.map(|index| mesh.positions()[index as usize]);
-        let vectors = [unit_normal(corners), corners[0], corners[1], corners[2]];
-        let mut record = [0; TRIANGLE_BYTES];
-        let floats = vectors.as_flattened().iter().flat_map(|&c| (c as f32).to_le_bytes());
-        for (byte, value) in record.iter_mut().zip(floats) {
-            *byte = value;
-        }
-        out.write_all(&record)?;
-    }
-    Ok(())
-}
-
-/// Counter-clockwise normal, zero for a triangle without area.
-fn unit_normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    let edge = |end: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| end[k] - a[k]) };
-    let (u, v) = (edge(b), edge(c));
-    let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    let length = cross.iter().map(|c| c * c).sum::<f64>().sqrt();
-    if length > 0.0 { cross.map(|c| c / length) } else { [0.0; 3] }
 }

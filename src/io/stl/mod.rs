@@ -6,8 +6,9 @@
 mod binary;
 mod text;
 mod weld;
+mod write;
 
-pub(super) use binary::write;
+pub(super) use write::Plan;
 
 use super::{MeshFile, Place, ReadError, source::Source};
 use binary::HEADER_BYTES;

@@ -305,6 +305,9 @@ pub struct Attributes {
     pub material_libraries: Arc<[String]>,
     /// How the materials of a glTF file look.
     pub gltf_materials: Option<GltfMaterials>,
+    /// What else is known of the whole, as pairs of a key and a text: `crs.wkt` and the like of LAS, the coordinate
+    /// reference system. Keys are unique. Carried, not looked into; all meshes of a scene share it.
+    pub metadata: Arc<[(String, String)]>,
     /// If the mesh is several meshes of a scene, where they stand.
     pub scene: Option<SceneTable>,
 }

@@ -126,7 +126,7 @@ impl Slot {
         &self.report
     }
 
-    /// Precision, origin, side and bytes of the stream, then for each pass: kind, level, precision,
+    /// Precision, origin, longest side and bytes of the stream and the steps along its axes, then for each pass: kind, level, precision,
     /// vertices, faces, bytes, end.
     pub fn info(&self) -> &[f64] {
         &self.info
@@ -137,6 +137,7 @@ impl Slot {
         self.info.push(f64::from(info.quantization_bits()));
         self.info.extend(info.origin());
         self.info.extend([info.side(), info.total_bytes() as f64]);
+        self.info.extend(info.step());
         for pass in info.passes() {
             let counts = [kind(pass.kind), pass.level, pass.quantization_bits, pass.vertices, pass.triangles];
             self.info.extend(counts.map(f64::from));

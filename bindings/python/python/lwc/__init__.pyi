@@ -44,11 +44,14 @@ class Info(TypedDict):
     quantization_bits: int
     origin: tuple[float, float, float]
     side: float
+    step: tuple[float, float, float]
+    lattice_origin: tuple[float, float, float] | None
     levels: int
     total_bytes: int
     profile: str
     passes: list[Pass]
     attributes: list[AttributeInfo]
+    metadata: dict[str, str]
 
 def descriptors() -> list[str]: ...
 def encode(
@@ -58,6 +61,9 @@ def encode(
     attributes: dict[str, Attribute | ArrayLike] | None = None,
     descriptor: str | None = None,
     quantization_bits: int | None = None,
+    step: float | tuple[float, float, float] | None = None,
+    grid_origin: tuple[float, float, float] | None = None,
+    cubic_grid: bool = False,
     levels: int | None = None,
     rings: int | None = None,
     radius: float | None = None,

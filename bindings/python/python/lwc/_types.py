@@ -160,3 +160,5 @@ class Scene:
     materials: str | None = field(default=None, repr=False)
     """How materials look: JSON with the lists of glTF 2.0, ``bufferView`` of an image counting ``images``."""
     images: list[bytes] = field(default_factory=list, repr=False)
+    metadata: dict[str, str] = field(default_factory=dict)
+    """What else is known of the whole: ``crs.wkt`` is a coordinate reference system."""
