@@ -8,6 +8,7 @@ Needs nothing but Python 3.8.
 """
 
 import collections
+import itertools
 import json
 import math
 import pathlib
@@ -672,9 +673,9 @@ class Base:
         else:
             tip, self.last_tip = self.far_tip(sides), FAR
         _, at_pivot, at_end = self.place([tip, end, pivot])
-        if self.last_tip != BESIDE_PIVOT and at_end != NONE:
+        if at_pivot != NONE and at_end != NONE:
             self.gates.append(at_end)
-        front = at_end if self.last_tip == BESIDE_PIVOT and at_end != NONE else at_pivot
+        front = at_end if at_pivot == NONE else at_pivot
         if front != NONE:
             self.gates.appendleft(front)
 
@@ -1574,6 +1575,454 @@ class Numbers:
     def signed(self, coder, context):
         n = self.code(coder, context)
         return -n if n > 0 and self.bits.code(coder, (context, 432)) else n
+
+
+# 6.7 Symbols in tables
+
+
+class Group:
+    """The symbols of one alphabet: a tree of contexts, and a table for each of its leaves."""
+
+    def __init__(self, coder, alphabet, sizes, most):
+        self.sizes, self.leaves, self.tables, self.looks_at = sizes, {}, [], set()
+        is_leaf, number_of_leaves = Plain(), 0
+        waiting = [([(0, size) for size in sizes], 0)]
+        while waiting:
+            ranges, depth = waiting.pop()
+            if is_leaf.code(coder, min(depth, 7)):
+                require(number_of_leaves < most, "too many tables")
+                for context in itertools.product(*(range(*r) for r in ranges)):
+                    self.leaves[context] = number_of_leaves
+                number_of_leaves += 1
+                continue
+            attribute = self.below(coder, len(sizes))
+            self.looks_at.add(attribute)
+            low, high = ranges[attribute]
+            require(high - low > 1, "a side of a tree is empty")
+            threshold = low + 1 + self.below(coder, high - low - 1)
+            for side in (threshold, high), (low, threshold):
+                waiting.append((ranges[:attribute] + [side] + ranges[attribute + 1 :], depth + 1))
+            require(len(waiting) + number_of_leaves <= most, "too many tables")
+        size_model, frequency_model = Numbers(), Numbers()
+        for _ in range(number_of_leaves):
+            size = size_model.code(coder, 0) + 1
+            require(size <= alphabet, "a table has too many symbols")
+            left, before, symbols = 1024, 0, []
+            for symbol in range(size - 1):
+                frequency = frequency_model.code(coder, before)
+                require(frequency < left, "the frequencies of a table")
+                symbols += [(symbol, frequency, k) for k in range(frequency)]
+                left -= frequency
+                before = (frequency + 1).bit_length() - 1
+            self.tables.append(symbols + [(size - 1, left, k) for k in range(left)])
+
+    @staticmethod
+    def below(coder, n):
+        k = coder.raw((n - 1).bit_length())
+        require(k < n, "a tree asks for what does not exist")
+        return k
+
+
+class Symbols:
+    """Reads symbols, after the head of a payload."""
+
+    def __init__(self, reader, groups):
+        self.groups = groups
+        words = reader.varint()
+        self.states = [struct.unpack("<I", reader.take(4))[0] for _ in range(2)]
+        require(min(self.states) >= 1 << 16, "a state is too small")
+        self.words = collections.deque(struct.unpack("<%dH" % words, reader.take(2 * words)))
+        self.bytes, self.at, self.turn = reader.data[reader.at :], 0, 0
+
+    def symbol(self, group, context):
+        group, state = self.groups[group], self.states[self.turn]
+        symbol, frequency, offset = group.tables[group.leaves[context]][state % 1024]
+        state = frequency * (state // 1024) + offset
+        if state < 1 << 16:
+            require(self.words, "a pass needs more bytes than it has")
+            state = state << 16 | self.words.popleft()
+        self.states[self.turn] = state
+        self.turn = 1 - self.turn
+        return symbol
+
+    def raw(self, n):
+        require(self.at + n <= 8 * len(self.bytes), "a pass needs more bytes than it has")
+        value = sum((self.bytes[i >> 3] >> (i & 7) & 1) << k for k, i in enumerate(range(self.at, self.at + n)))
+        self.at += n
+        return value
+
+    def signed(self, group, context):
+        n = self.symbol(group, context)
+        if n >= 16:
+            digits = (n - 16) // 4 + 2
+            n = (4 + n % 4) << digits | self.raw(digits)
+        return -(n + 1) // 2 if n % 2 else n // 2
+
+    def check_end(self):
+        require(self.states == [1 << 16] * 2 and not self.words, "symbols do not end where they should")
+        rest = 8 * len(self.bytes) - self.at
+        require(not any(self.raw(1) for _ in range(rest)), "bits after the end")
+
+
+# 7.13 Base mesh in tables
+
+TIPS, STEPS, JUMPS, RESIDUALS = range(4)
+NOTHING = 4
+TIP_SIZES = (4, 10, 5, 8, 8, 4)
+FIRST_PREDICTIONS = (
+    ((38, 19, 0), (28, 19, 0)),
+    ((-2, 6, 0), (1, 21, 0)),
+    ((-4, 4, 0), (4, 68, 0)),
+    ((-4, 10, 15), (2, 59, 2)),
+    ((-3, 20, 12), (2, 56, 18)),
+    ((-1, 30, 1), (18, 19, 0)),
+    ((19, 19, 0), (19, 19, 0)),
+)
+FIRST_SIZES = (
+    (130, 2, 5, 2, 21, 5, -61, 6),
+    (108, 3, 2, 1, 22, 8, -62, 6),
+    (81, -18, 20, 7, 5, 10, -18, 4),
+)
+
+
+def rough_log2(x):
+    return Single(struct.unpack("<i", struct.pack("<f", x))[0] - 0x3F800000) * 2.0**-23
+
+
+def log_size(x):
+    return rough_log2(abs(x) + Single(0.35))
+
+
+class TableBase:
+    def __init__(self, payload, num_vertices, num_faces, precision):
+        reader = Reader(payload)
+        head = RangeDecoder(reader.take(reader.varint()))
+        self.read_weights(head)
+        groups = [
+            Group(head, 5, TIP_SIZES, 48),
+            Group(head, 33, (1,), 1),
+            Group(head, 128, (1,), 1),
+            Group(head, 128, (10, 3, 3, 40, 4, 7), 48),
+        ]
+        head.check_end()
+        self.looks_for_repeated = bool(groups[RESIDUALS].looks_at & {0, 1})
+        self.coder, self.num_vertices = Symbols(reader, groups), num_vertices
+        self.mesh = mesh = Mesh()
+        mesh.precision = precision
+        self.before, self.after, self.border = [], [], set()
+        self.faces, self.bound, self.last = [], [], NEW
+        self.gates = collections.deque()
+        while len(mesh.triangle) < num_faces:
+            if not self.gates:
+                self.seed()
+            else:
+                gate = self.gates.popleft()
+                if self.is_open(gate):
+                    self.grow(gate)
+        require(len(self.faces) == num_vertices, "the base mesh has fewer vertices than the table of passes says")
+        mesh.check_base(num_vertices)
+        self.check_links()
+        self.place_all()
+        self.coder.check_end()
+
+    def read_weights(self, head):
+        self.predictions, self.sizes = FIRST_PREDICTIONS, FIRST_SIZES
+        if not head.raw(1):
+            return
+        numbers = Numbers()
+
+        def sent(context, usual):
+            weight = usual + numbers.signed(head, context)
+            require(abs(weight) <= 1 << 14, "a weight beyond its bounds")
+            return weight
+
+        self.predictions = [[[sent(0, w) for w in side] for side in class_] for class_ in self.predictions]
+        self.sizes = [[sent(1, w) for w in kind] for kind in self.sizes]
+
+    # Triangles
+
+    def is_open(self, c):
+        return self.mesh.across[c] == NONE and c not in self.border
+
+    def start(self, c):
+        return self.mesh.vertex(next_(c))
+
+    def end(self, c):
+        return self.mesh.vertex(prev(c))
+
+    def link(self, c, d):
+        self.after[c], self.before[d] = d, c
+
+    def add(self, t):
+        first = len(self.mesh.across)
+        require(len(set(t)) == 3, "a base triangle names a vertex twice")
+        self.mesh.triangle.append(t)
+        self.mesh.across += [NONE] * 3
+        self.before += [NONE] * 3
+        self.after += [NONE] * 3
+        for v in t:
+            self.faces[v] += 1
+        return first, first + 1, first + 2
+
+    def new_vertex(self):
+        require(len(self.faces) < self.num_vertices, "more vertices than the table of passes says")
+        self.faces.append(0)
+        self.bound.append(0)
+        return len(self.faces) - 1
+
+    def seed(self):
+        a, b, c = self.add([self.new_vertex() for _ in range(3)])
+        for x, y in (a, b), (b, c), (c, a):
+            self.link(x, y)
+        self.gates.extend((a, b, c))
+
+    def grow(self, gate):
+        mesh = self.mesh
+        s, e = self.before[gate], self.after[gate]
+        pivot, end, x, y = self.start(gate), self.end(gate), self.start(s), self.end(e)
+        degrees = [min(self.faces[v] - 1, n - 1) for v, n in zip((pivot, end, x, y), TIP_SIZES[1:])]
+        bounds = 2 * self.bound[pivot] + self.bound[end]
+        tip = self.coder.symbol(TIPS, (bounds, *degrees, self.last))
+        if tip == NOTHING:
+            self.border.add(gate)
+            self.bound[pivot] = self.bound[end] = 1
+            return
+        at_pivot = at_end = NONE
+        if tip == NEW:
+            k, at_pivot, at_end = self.add([self.new_vertex(), end, pivot])
+            self.link(s, at_pivot)
+            self.link(at_pivot, at_end)
+            self.link(at_end, e)
+        elif tip == BESIDE_PIVOT:
+            outer = self.before[s]
+            require(self.is_open(s) and s != e and (outer != e or self.is_open(e)), "a triangle that cannot be")
+            k, c, d = self.add([x, end, pivot])
+            mesh.link(c, s)
+            if outer == e:
+                mesh.link(d, e)
+            else:
+                at_end = d
+                self.link(outer, d)
+                self.link(d, e)
+        elif tip == BESIDE_END:
+            outer = self.after[e]
+            require(self.is_open(e) and s != e and outer != s, "a triangle that cannot be")
+            k, at_pivot, d = self.add([y, end, pivot])
+            mesh.link(d, e)
+            self.link(s, at_pivot)
+            self.link(at_pivot, outer)
+        else:
+            at = self.far(s, e)
+            outer = self.before[at]
+            k, at_pivot, at_end = self.add([self.start(at), end, pivot])
+            self.link(s, at_pivot)
+            self.link(at_pivot, at)
+            self.link(outer, at_end)
+            self.link(at_end, e)
+        mesh.link(k, gate)
+        self.last = tip
+        if at_pivot != NONE and at_end != NONE:
+            self.gates.append(at_end)
+        front = at_end if at_pivot == NONE else at_pivot
+        if front != NONE:
+            self.gates.appendleft(front)
+
+    def far(self, s, e):
+        near, behind, ahead = [], s, self.after[e]
+        for _ in range(16):
+            behind, ahead = self.before[behind], self.after[ahead]
+            near += [behind, ahead]
+        steps = self.coder.symbol(STEPS, (0,))
+        if steps < 32:
+            return near[steps]
+        c = self.coder.raw(len(self.mesh.across).bit_length())
+        require(c < len(self.mesh.across) and self.mesh.across[c] == NONE, "an edge that is not open")
+        return c
+
+    def check_links(self):
+        """No edge lies on the boundary if its reverse does, too."""
+        mesh = self.mesh
+        edges = {(self.start(c), self.end(c)): c for c in range(len(mesh.across))}
+        for (a, b), c in edges.items():
+            require(edges.get((b, a), NONE) == mesh.across[c], "an edge is not linked")
+
+    # Positions
+
+    def place_all(self):
+        mesh, n = self.mesh, self.num_vertices
+        self.limit = 1 << mesh.precision
+        edge, last = Single(self.limit) / 8, [self.limit // 2] * 3
+        mesh.cell, mesh.roughness = [None] * n, [[-16, -16]] * n
+        self.misses = [(ZERO, ZERO, ZERO)] * n
+        self.order = PlacingOrder(mesh)
+        for _ in range(n):
+            v = self.order.next()
+            around = Seen(self, v)
+            if around.ring:
+                outlook = TableOutlook(self, around, edge)
+                cell = outlook.decode()
+                mesh.roughness[v] = outlook.roughness()
+                self.misses[v] = sub(outlook.place, outlook.mean)
+                edge += (outlook.length * 2 - edge) * 0.1
+            else:
+                cell = [x + self.coder.signed(JUMPS, (0,)) for x in last]
+                require(all(0 <= x < self.limit for x in cell), "a base vertex lies outside the grid")
+            mesh.cell[v] = last = cell
+            self.place_in_order(v, around)
+
+    def place_in_order(self, v, around):
+        """As in 7.1, but edge by edge around the vertex."""
+        order, placed, ring, tips = self.order, self.order.placed, around.vertices, around.tips
+        placed[v] = True
+        m = len(ring)
+        for i in range(m if around.closed else m - 1):
+            a, b, t = ring[i], ring[(i + 1) % m], tips[i]
+            if not placed[b]:
+                continue
+            if placed[a] and t != NONE and not placed[t]:
+                self.count(t)
+            if around.closed or i + 2 < m:
+                c = ring[(i + 2) % m]
+                if placed[a] != placed[c]:
+                    self.count(c if placed[a] else a)
+
+    def count(self, u):
+        order = self.order
+        if order.count[u] < 3:
+            order.waiting[order.count[u]].append(u)
+            order.count[u] += 1
+
+
+class Seen:
+    """What is around a vertex."""
+
+    def __init__(self, base, v):
+        mesh, placed = base.mesh, base.order.placed
+        corners, self.closed = mesh.fan(mesh.corner_of[v])
+        self.vertices = [mesh.vertex(next_(c)) for c in corners]
+        self.tips = [NONE if mesh.across[c] == NONE else mesh.vertex(mesh.across[c]) for c in corners]
+        if not self.closed:
+            self.vertices.append(mesh.vertex(prev(corners[-1])))
+            self.tips.append(NONE)
+        known = [u for u in self.vertices if placed[u]]
+        self.ring, self.misses, self.rough = [], (ZERO, ZERO, ZERO), [mesh.roughness[u] for u in known]
+        self.fine, self.tip_rough = [], []
+        if not known:
+            return
+        self.origin = mesh.cell[known[0]]
+        self.ring = [vector(self.origin, mesh.cell[u]) for u in known]
+        for u in known:
+            self.misses = add(self.misses, base.misses[u])
+        m = len(self.vertices)
+        for i, t in enumerate(self.tips):
+            a, b = self.vertices[i], self.vertices[(i + 1) % m]
+            if t != NONE and placed[a] and placed[b] and placed[t]:
+                p, q, r = (vector(self.origin, mesh.cell[u]) for u in (a, b, t))
+                self.fine.append((sub(add(p, q), r), cross(sub(p, q), sub(r, q))))
+                self.tip_rough.append(mesh.roughness[t])
+
+
+class TableOutlook:
+    def __init__(self, base, around, edge):
+        self.base, self.around = base, around
+        ring, fine = around.ring, [p for p, _ in around.fine]
+        m, n = len(ring), len(fine)
+        share = ONE / m
+        ring_mean = (ZERO, ZERO, ZERO)
+        for p in ring:
+            ring_mean = add(ring_mean, p)
+        ring_mean = scaled(ring_mean, share)
+        extent = (ZERO, ZERO, ZERO)
+        for p in ring:
+            extent = add(extent, tuple(abs(x) for x in sub(p, ring_mean)))
+        length = (extent[0] + extent[1] + extent[2]) * share if m > 1 else edge * 0.5
+        self.length = max(length, Single(0.25))
+        self.mean = ring_mean
+        nothing = (ZERO, ZERO, ZERO)
+        self.spread, normal = nothing, nothing
+        features = [scaled(around.misses, share), nothing, nothing]
+        if n:
+            total = nothing
+            for p, area in around.fine:
+                total, normal = add(total, p), add(normal, area)
+            self.mean = scaled(total, ONE / n)
+            agreed = [agree(sorted(p[a] for p in fine[:16])) for a in range(3)]
+            median, self.spread = tuple(a[0] for a in agreed), tuple(a[1] for a in agreed)
+            features[1] = scaled(sub(ring_mean, self.mean), 0.5)
+            features[2] = sub(median, self.mean)
+        if dot(normal, normal) == 0:
+            before = sub(ring[-1], ring_mean)
+            normal = nothing
+            for p in ring:
+                d = sub(p, ring_mean)
+                normal, before = add(normal, cross(before, d)), d
+        self.class_ = 6 if n == 0 and m == 1 else min(n, 5)
+        self.axes, self.slope = tangent_plane(normal)
+        self.along, self.across = (self.corrected(features, w) for w in base.predictions[self.class_])
+        self.log_length = rough_log2(self.length)
+        self.by_ring = self.by(around.rough)
+        self.by_tips = self.by(around.tip_rough) if n else self.by_ring
+        self.num_fine, self.lean = Single(min(n, 3)), features[0]
+        self.place, self.errors = [ZERO] * 3, [ZERO] * 3
+
+    def corrected(self, features, weights):
+        a, b, c = (scaled(f, Single(w) * (ONE / 64)) for f, w in zip(features, weights))
+        return add(self.mean, add(add(a, b), c))
+
+    def by(self, rough):
+        factor = Single(0.125) / len(rough)
+        return [Single(sum(r[i] for r in rough)) * factor + self.log_length for i in (0, 1)]
+
+    def decode(self):
+        origin, cell = self.around.origin, [0] * 3
+        for kind in range(3):
+            axis, side = self.axes[kind], int(kind == 2)
+            if kind == 2:
+                centre = self.across[axis] - dot(self.slope, sub(self.place, self.across))
+            else:
+                centre = self.along[axis]
+            centre = Single(clamp(centre, -1e9, 1e9))
+            nearest = math.floor(centre + 0.5)
+            mirrored = centre < Single(nearest)
+            cues = (
+                ONE,
+                self.log_length,
+                self.by_ring[side],
+                self.by_tips[side],
+                log_size(self.spread[axis]),
+                rough_log2(abs(self.errors[0]) + abs(self.errors[1]) + Single(0.35)) if kind else ZERO,
+                self.num_fine,
+                log_size(self.lean[axis]),
+            )
+            p = [Single(w) * (ONE / 64) * c for w, c in zip(self.base.sizes[kind], cues)]
+            log = ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]))
+            level_ = index((log - Single(-1.6)) * 5, 40)
+            fraction = index(abs(centre - Single(nearest)) * 8, 4)
+            repeated = self.repeated(axis, centre, nearest, mirrored) if self.base.looks_for_repeated else (0, 0)
+            context = (*repeated, kind, level_, fraction, self.class_)
+            residual = self.base.coder.signed(RESIDUALS, context)
+            x = origin[axis] + nearest + (residual if mirrored else -residual)
+            require(0 <= x < self.base.limit, "a base vertex lies outside the grid")
+            cell[axis] = x
+            self.place[axis] = Single(x - origin[axis])
+            self.errors[kind] = self.place[axis] - centre
+        return cell
+
+    def repeated(self, axis, centre, nearest, mirrored):
+        value, least, count = None, math.inf, 0
+        for p in self.around.ring:
+            distance = abs(p[axis] - centre)
+            if distance < least:
+                value, least, count = p[axis], distance, 0
+            elif p[axis] == value:
+                count += 1
+        steps = int(value) - nearest
+        steps = -steps if mirrored else steps
+        return (steps + 4 if -4 <= steps <= 4 else 9), min(count, 2)
+
+    def roughness(self):
+        a, b, across = self.errors
+        return [int(clamp((log_size(e) - self.log_length) * 8, -120.0, 120.0)) for e in (abs(a) + abs(b), across)]
 
 
 class Stitching:
@@ -2908,8 +3357,12 @@ def decode(stream):
         elif kind in "BSR":
             require(rows is not None and not awaited, "a chunk out of order")
             _, vertices, faces, _ = rows[done]
-            coder = Streams(payload, vertices) if is_fast and kind != "B" else RangeDecoder(payload)
-            if kind == "B":
+            method = payload[0] if is_fast and kind == "B" and payload else 0
+            require(method < 2, "the method of a base mesh")
+            coder = Streams(payload, vertices) if is_fast and kind != "B" else RangeDecoder(payload[is_fast:])
+            if kind == "B" and method == 1:
+                mesh, patches = TableBase(payload[1:], vertices, faces, precision).mesh, NONE
+            elif kind == "B":
                 mesh, patches = Base(coder, vertices, faces, precision).mesh, NONE
             elif kind == "S":
                 level_ += 1
@@ -2924,7 +3377,8 @@ def decode(stream):
                     decode_coordinates(coder, *coordinates, mesh, patches)
             else:
                 refine(coder, *refinement, mesh)
-            coder.check_end()
+            if method == 0:
+                coder.check_end()
             done += 1
             yield {"B": "base", "S": "split", "R": "refine"}[kind], level_, mesh
             if weights and any(weights[done - 1]):

@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$0")"
 
-for target in decode rearrange split_independent round_trip range_coder read_obj read_ply read_stl read_gltf read_las; do
+for target in decode rearrange split_independent round_trip range_coder ans read_obj read_ply read_stl read_gltf read_las; do
     mkdir -p "corpus/$target"
 done
 
@@ -26,6 +26,10 @@ for stream in ../format/golden/*.lwc ../format/golden/fast/*.lwc; do
     { printf '\003\000\005\003\001\004\006\002\007\000'; cat "$stream"; } > "corpus/rearrange/$name-changed"
     cp "$stream" "corpus/round_trip/$name"
     cp "$stream" "corpus/range_coder/$name"
+    # Bytes as symbols, as tables, and as a base mesh.
+    { printf '\000'; cat "$stream"; } > "corpus/ans/$name-symbols"
+    { printf '\144'; cat "$stream"; } > "corpus/ans/$name-tables"
+    { printf '\310\100\100'; cat "$stream"; } > "corpus/ans/$name-base"
 done
 
 printf 'v 0 0 0\nv 1 0 0\nvt 0 1\nv 0 1.5e0 0 # c\nv 0 0 1\nf 1 2 3\nf -1/1 -2 -3 -4\n' \

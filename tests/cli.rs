@@ -978,7 +978,7 @@ fn bad_inputs_are_named_in_one_sentence() {
         ("encode bad.obj", "lwc: bad.obj: line 3: "),
         ("describe bad.obj", "lwc: bad.obj: line 3: "),
         ("compare ball.ply bad.obj", "lwc: bad.obj: line 3: "),
-        ("encode points.obj", "lwc: points.obj: the mesh has no usable triangle"),
+        ("encode points.obj", "lwc: points.obj: a point cloud, which has no triangles"),
         ("encode missing.obj", "lwc: missing.obj: "),
         ("encode fake.ply.zst", "lwc: fake.ply.zst: cannot decompress: "),
         ("decode missing.lwc", "lwc: missing.lwc: "),

@@ -17,6 +17,24 @@ fn a_payload_of_zeros_is_not_damage() {
     fuzzing::range_coder(&finding("range_coder_payload_of_zeros.bin"));
 }
 
+/// Symbols in tables, random bytes, and payloads that look sound: a head of zeros is all defaults and tables of one symbol.
+#[test]
+fn symbols_in_tables_survive_random_bytes() {
+    let mut seed = 11_u32;
+    for i in 0..3000 {
+        let bytes = (0..i % 300).map(|_| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 24) as u8
+        });
+        let bytes: Vec<u8> = bytes.collect();
+        for kind in [0, 100, 200] {
+            fuzzing::ans(&[&[kind], &bytes[..]].concat());
+        }
+        let [a, b] = [i as u8, (i / 7) as u8];
+        fuzzing::ans(&[&[200, a, b, 8, 255, 255, 255, 255], &bytes[..], &[0; 40]].concat());
+    }
+}
+
 /// A cut chunk of attributes that was nonsense left those behind it without any value.
 #[test]
 fn attributes_are_without_gaps_whatever_has_come() {

@@ -6,7 +6,7 @@ mod common;
 
 use common::chunks;
 use common::exact::assert_round_trip;
-use common::kinds::every_kind;
+use common::kinds::{beside, every_kind};
 use common::*;
 use lwc::{
     DecodeError, Decoder, EncodeOptions, Limits, Optimize, Partition, Profile, Step, TriMesh, encode,
@@ -52,6 +52,31 @@ fn every_profile_gives_the_same_meshes() {
                 assert_eq!(meshes(&other, 7), small, "{what}, in slices");
             }
         }
+    }
+}
+
+/// Meshes whose base is in tables.
+#[test]
+fn one_piece_is_the_same_mesh_in_every_profile() {
+    let bumpy = |x: f64, y: f64| 0.6 * (0.7 * x).sin() * (0.5 * y).cos();
+    let sheet = noisy(grid(60, 50, bumpy), 2, 0.05);
+    for (name, mesh) in [
+        ("torus", noisy(torus(70, 40), 1, 0.004)),
+        ("sheet", sheet.clone()),
+        ("pieces", beside(beside(genus3(), sheet), beside(sphere(2), noisy(torus(9, 7), 1, 0.02)))),
+        ("soup", soup(2100, 700, 3)),
+    ] {
+        let stream = |profile| {
+            let mut options = EncodeOptions::default();
+            (options.levels, options.profile) = (Some(0), Some(profile));
+            encode(&mesh, &options).unwrap().bytes
+        };
+        let (small, fast) = (stream(Profile::Small), stream(Profile::Fast));
+        let base = chunks::split(&fast).into_iter().find(|chunk| chunk.kind == b'B').unwrap();
+        assert_eq!(base.payload[0], 1, "{name}: not in tables");
+        assert_eq!(meshes(&fast, u32::MAX), meshes(&small, u32::MAX), "{name}");
+        assert_eq!(meshes(&fast, 50), meshes(&small, u32::MAX), "{name}, in slices");
+        assert!(fast.len() * 10 < small.len() * 12, "{name}: {} and {} bytes", fast.len(), small.len());
     }
 }
 

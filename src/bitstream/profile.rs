@@ -10,8 +10,8 @@ pub enum Profile {
     /// Arithmetic coding with learnt models. The default.
     #[default]
     Small = 0,
-    /// Packed bits and symbols after the base mesh, compressed with zstd: larger, and several times as fast
-    /// to decode. Needs the feature `fast` on both sides.
+    /// A base mesh in static tables, then packed bits and symbols, compressed with zstd: larger, and several times as fast
+    /// to decode; without levels as large, and four times as fast. Needs the feature `fast` on both sides.
     Fast = 1,
     /// As [`Small`](Self::Small) with larger models: the smallest streams, half a percent to 1 % smaller, which take 1.3 to
     /// 1.5 times as long to decode.

@@ -10,6 +10,7 @@ use crate::entropy::range_coder::RangeDecoder;
 use crate::error::DecodeError;
 use crate::limits::Limits;
 use crate::mesh::Surface;
+use crate::passes::base_tables::pass::MEMORY_OF_MODELS;
 use crate::passes::patch::{Patches, StarBuilder};
 use crate::passes::work_budget::WorkBudget;
 use crate::passes::{GridMesh, Malformed};
@@ -43,8 +44,11 @@ impl PassDecoder {
 
     /// Bytes of memory that a pass may take, the buffer of the stream not counted.
     pub(super) fn memory_for(&self, pass: &PassInfo) -> u64 {
-        let base =
-            if let Action::Base { .. } = pass.row.action { 160 * u64::from(pass.triangles) } else { 0 };
+        let tables = if self.profile == Profile::Fast { MEMORY_OF_MODELS } else { 0 };
+        let base = match pass.row.action {
+            Action::Base { .. } => 160 * u64::from(pass.triangles) + tables,
+            _ => 0,
+        };
         bytes_of_models(self.profile.mixing())
             + base
             + BYTES_PER_VERTEX * u64::from(pass.vertices)

@@ -10,15 +10,22 @@ use crate::entropy::range_coder::{BitCoder, RangeDecoder, RangeState};
 use crate::entropy::streams::StreamReader;
 use crate::passes::base::Grower;
 use crate::passes::base_positions::Placement;
+use crate::passes::base_tables::method::BaseMethod;
+use crate::passes::base_tables::pass::BaseInTables;
 use crate::passes::connectivity::PausedWalk;
 use crate::passes::coordinates_fast::Located;
 use crate::passes::patch::{Patches, StarBuilder};
 use crate::passes::work_budget::{SWEPT_PER_UNIT, WorkBudget};
 use crate::passes::{EXHAUSTED, GridMesh, Malformed, coordinates, coordinates_fast, refine};
 
+/// Bytes before a base mesh of the profile fast.
+const METHOD_BYTES: usize = 1;
+
 /// A pass that has begun, and what was there before it.
 pub(super) struct Running {
     coder: Coder,
+    /// Bytes of the payload that say how it is coded.
+    num_method_bytes: usize,
     stage: Stage,
     /// Positions before a refinement, once it writes them.
     pub(super) old_positions: Option<Vec<[i32; 3]>>,
@@ -31,8 +38,25 @@ pub(super) struct Running {
 enum Coder {
     Range(RangeState),
     Streams(Box<StreamReader>),
+    /// A base mesh in tables, which has stages of its own.
+    Tables(Box<BaseInTables>),
     /// Taken out while the pass goes on.
     AtWork,
+}
+
+impl Coder {
+    /// What reads a base mesh of the profile fast.
+    fn of_fast_base(payload: &[u8], pass: &PassInfo, quantization_bits: u32) -> Option<Self> {
+        let method = BaseMethod::of(payload)?;
+        let payload = &payload[METHOD_BYTES..];
+        Some(match method {
+            BaseMethod::Mixed => Self::Range(RangeDecoder::new(payload).pause()),
+            BaseMethod::Tables => {
+                let (vertices, triangles) = (pass.vertices as usize, pass.triangles as usize);
+                Self::Tables(Box::new(BaseInTables::new(payload, vertices, triangles, quantization_bits)?))
+            }
+        })
+    }
 }
 
 /// What is done next.
@@ -58,15 +82,22 @@ enum Stage {
 }
 
 impl Running {
-    /// `None` if the payload has streams and they are not what such a pass may have.
+    /// `None` if the payload has streams or tables and they are not what such a pass may have.
     pub(super) fn new(payload: &[u8], pass: &PassInfo, profile: Profile) -> Option<Self> {
-        let coder = if STREAMS && profile == Profile::Fast && pass.kind != PassKind::Base {
-            Coder::Streams(Box::new(StreamReader::new(payload, pass.row.vertices, most_stream_bytes(pass))?))
-        } else {
-            Coder::Range(RangeDecoder::new(payload).pause())
+        let is_fast = STREAMS && profile == Profile::Fast;
+        let (coder, num_method_bytes) = match pass.row.action {
+            Action::Base { quantization_bits } if is_fast => {
+                (Coder::of_fast_base(payload, pass, quantization_bits)?, METHOD_BYTES)
+            }
+            _ if is_fast => {
+                let reader = StreamReader::new(payload, pass.row.vertices, most_stream_bytes(pass))?;
+                (Coder::Streams(Box::new(reader)), 0)
+            }
+            _ => (Coder::Range(RangeDecoder::new(payload).pause()), 0),
         };
         Some(Self {
             coder,
+            num_method_bytes,
             stage: Stage::Begin,
             old_positions: None,
             old_triangles: None,
@@ -82,6 +113,7 @@ impl Running {
         payload: &[u8],
         work: &mut WorkBudget,
     ) -> Result<Option<Patches>, Malformed> {
+        let payload = &payload[self.num_method_bytes..];
         match std::mem::replace(&mut self.coder, Coder::AtWork) {
             Coder::Range(state) => {
                 let mut coder = RangeDecoder::resume(payload, &state);
@@ -95,7 +127,15 @@ impl Running {
                 self.coder = Coder::Streams(coder);
                 result
             }
-            Coder::Streams(_) | Coder::AtWork => Err(Malformed(EXHAUSTED)),
+            Coder::Tables(mut base) if STREAMS => {
+                let mesh = base.advance(payload, work)?;
+                self.coder = Coder::Tables(base);
+                Ok(mesh.map(|mesh| {
+                    decoder.mesh = mesh;
+                    Patches::default()
+                }))
+            }
+            Coder::Streams(_) | Coder::Tables(_) | Coder::AtWork => Err(Malformed(EXHAUSTED)),
         }
     }
 

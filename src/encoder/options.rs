@@ -117,9 +117,8 @@ impl EncodeOptions {
         if is_for_size && self.effort >= Self::HIGHEST_EFFORT {
             tried.extend([5, 7].map(|valence| Attempt { max_valence: Some(valence), ..usual }));
         }
-        // Many surfaces are smallest in one piece; but a base mesh takes its time whatever the profile.
-        let may_be_one = self.levels.is_none() && self.profile_used() != Profile::Fast;
-        if is_for_size && may_be_one && self.effort >= Self::LOW_EFFORT {
+        // Many surfaces are smallest in one piece.
+        if is_for_size && self.levels.is_none() && self.effort >= Self::LOW_EFFORT {
             tried.push(Attempt { levels: Some(0), ..usual });
         }
         tried

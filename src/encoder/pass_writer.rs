@@ -18,12 +18,17 @@ use crate::entropy::streams::StreamWriter;
 use crate::passes::GridMesh;
 use crate::passes::base::{self, BaseTarget};
 use crate::passes::base_positions::Base;
+use crate::passes::base_tables::method::BaseMethod;
+use crate::passes::base_tables::write::write as write_base_in_tables;
 use crate::passes::coordinates::{self, CoordinateModels};
 use crate::passes::coordinates_fast::{self, Located};
 use crate::passes::patch::{Patches, Star, StarBuilder};
 use crate::passes::refine::{self, RefineModels};
 use crate::passes::work_budget::WorkBudget;
 use crate::simplification::LevelRecord;
+
+/// Vertices of a base mesh in the profile fast that may be mixed: that takes a few milliseconds.
+const MOST_MIXED: usize = 2000;
 
 /// The decoder's state, and the passes so far.
 pub(super) struct PassWriter<'a> {
@@ -53,7 +58,7 @@ impl<'a> PassWriter<'a> {
         let Original { input, on_grid, quantized } = *original;
         let (profile, cells) = (input.options.profile_used(), &on_grid.cells[..]);
         let (mixing, full_bits) = (profile.mixing(), on_grid.grid.quantization_bits);
-        let (coded, payload) = code_base(hierarchy, cells, [full_bits, quantization_bits], mixing);
+        let (coded, payload) = code_base(hierarchy, cells, [full_bits, quantization_bits], profile);
         let numbering = Numbering::of_base(&coded, hierarchy);
         let mut writer = Self {
             cells,
@@ -222,14 +227,37 @@ fn code_base(
     hierarchy: &Hierarchy,
     cells: &[[i32; 3]],
     [full_bits, quantization_bits]: [u32; 2],
-    mixing: Mixing,
+    profile: Profile,
 ) -> (Base, Vec<u8>) {
     let hidden = full_bits - quantization_bits;
     let positions: Vec<[i32; 3]> =
         hierarchy.base_vertices.iter().map(|&v| cells[v as usize].map(|c| c >> hidden)).collect();
     let target = BaseTarget { surface: &hierarchy.base, positions: &positions };
-    let (num_vertices, num_faces) = (positions.len(), hierarchy.base.triangles.len());
+    if profile == Profile::Fast {
+        return code_base_fast(&target, quantization_bits);
+    }
+    mix_base(&target, quantization_bits, profile.mixing())
+}
+
+fn mix_base(target: &BaseTarget, quantization_bits: u32, mixing: Mixing) -> (Base, Vec<u8>) {
+    let (num_vertices, num_faces) = (target.positions.len(), target.surface.triangles.len());
     let mut coder = RangeEncoder::new();
-    let coded = base::code(&mut coder, num_vertices, num_faces, quantization_bits, mixing, Some(&target));
+    let coded = base::code(&mut coder, num_vertices, num_faces, quantization_bits, mixing, Some(target));
     (expect_sound(coded), coder.finish())
+}
+
+/// Codes the base mesh in tables, or by mixing if it is small and smaller so: the tables cost more than they gain then.
+fn code_base_fast(target: &BaseTarget, quantization_bits: u32) -> (Base, Vec<u8>) {
+    let with_method = |method: BaseMethod, mut payload: Vec<u8>| {
+        payload.insert(0, method as u8);
+        payload
+    };
+    let (base, tables) = expect_sound(write_base_in_tables(target, quantization_bits));
+    if target.positions.len() <= MOST_MIXED {
+        let (base, mixed) = mix_base(target, quantization_bits, Profile::Fast.mixing());
+        if mixed.len() < tables.len() {
+            return (base, with_method(BaseMethod::Mixed, mixed));
+        }
+    }
+    (base, with_method(BaseMethod::Tables, tables))
 }

@@ -3,6 +3,9 @@
 //! Each takes any bytes and panics if a promise of the library does not hold.
 
 mod chunks;
+mod tables;
+
+pub use tables::ans;
 
 use crate::bitstream::chunk::{self, kind};
 use crate::bitstream::chunk_index::ChunkIndex;

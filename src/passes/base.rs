@@ -252,8 +252,8 @@ impl<'a> Grower<'a> {
         // The triangle beyond starts at its tip, so that it faces the gate with its first corner.
         let [_, at_pivot, at_end] = self.place([tip, end, pivot], beyond)?;
         // Around the pivot as long as that goes, then around the vertex that encloses it.
-        self.gates.extend(at_end.filter(|_| found != Tip::BesidePivot));
-        if let Some(gate) = at_end.filter(|_| found == Tip::BesidePivot).or(at_pivot) {
+        self.gates.extend(at_end.filter(|_| at_pivot.is_some()));
+        if let Some(gate) = at_pivot.or(at_end) {
             self.gates.push_front(gate);
         }
         Ok(())

@@ -1,10 +1,10 @@
 //! Coordinates bit for bit (`format/SPEC.md`, section 7.8): which of the numbers that lie in a cell it is.
 
 use super::float_values::{Ladder, Scale};
-use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::bitstream::grid::Grid;
 use crate::entropy::context_mixer::PlainBits;
+use crate::entropy::numbers::Numbers;
 use crate::entropy::range_coder::BitCoder;
 use std::collections::HashMap;
 

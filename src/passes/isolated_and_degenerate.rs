@@ -1,9 +1,9 @@
 //! What is not part of a surface: vertices without triangles, triangles that name a vertex twice
 //! (`format/SPEC.md`, section 7.7).
 
-use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
 use crate::bitstream::header::MAX_VERTICES_PER_BYTE;
+use crate::entropy::numbers::Numbers;
 use crate::entropy::range_coder::BitCoder;
 
 /// Vertices after those of the surface, and triangles after its own.

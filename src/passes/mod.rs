@@ -8,6 +8,7 @@
 pub(crate) mod attribute;
 pub(crate) mod base;
 pub(crate) mod base_positions;
+pub(crate) mod base_tables;
 mod base_traversal;
 pub(crate) mod coding_context;
 pub(crate) mod compensation;
@@ -19,7 +20,6 @@ pub(crate) mod cost;
 pub(crate) mod exact;
 pub(crate) mod float_values;
 pub(crate) mod isolated_and_degenerate;
-pub(crate) mod numbers;
 pub(crate) mod order;
 pub(crate) mod patch;
 pub(crate) mod refine;

@@ -1,8 +1,8 @@
 //! The order of a file (`format/SPEC.md`, section 7.9): which vertex and which triangle comes next,
 //! named by what is next to the last ones.
 
-use super::numbers::Numbers;
 use super::{EXHAUSTED, Malformed};
+use crate::entropy::numbers::Numbers;
 use crate::entropy::range_coder::BitCoder;
 use crate::mesh::{CornersAt, TriMesh};
 

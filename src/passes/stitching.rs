@@ -1,9 +1,9 @@
 //! Which vertices of the surface are one vertex of the mesh (`format/SPEC.md`, section 7.6). Where a mesh
 //! is not manifold, an encoder cuts it into sheets; the stitching joins them again.
 
-use super::numbers::Numbers;
 use super::{EXHAUSTED, GridMesh, Malformed};
 use crate::entropy::context_mixer::PlainBits;
+use crate::entropy::numbers::Numbers;
 use crate::entropy::range_coder::BitCoder;
 use crate::mesh::surface::{NO_CORNER, next, prev};
 

@@ -66,11 +66,12 @@ pub struct Encode {
     pub optimize: Optimize,
     /// How the passes are coded. Default: max with `--optimize size`, else small.
     ///
-    /// All give the same meshes, except that `--optimize size` always keeps the levels with fast.
+    /// All give the same meshes, if they have the same levels.
     ///
     /// - max: arithmetic coding with the largest models, which takes 1.3 to 1.5 times as long to decode as small
     /// - small: arithmetic coding, a stream half a percent to 1 % larger than with max
-    /// - fast: zstd, a stream 1.2 to 1.6 times as large that decodes three to five times as fast
+    /// - fast: zstd, a stream 1.2 to 1.6 times as large that decodes three to five times as fast; with `--levels 0`
+    ///   tables, about as large and four times as fast
     #[arg(long, value_name = "NAME", verbatim_doc_comment)]
     #[arg(value_parser = profile_parser())]
     pub profile: Option<Profile>,

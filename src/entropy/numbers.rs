@@ -1,7 +1,7 @@
 //! Whole numbers of any size in adaptive bits (`format/SPEC.md`, section 6.5).
 
-use crate::entropy::context_mixer::PlainBits;
-use crate::entropy::range_coder::BitCoder;
+use super::context_mixer::PlainBits;
+use super::range_coder::BitCoder;
 
 /// Largest number of digits of a number and one.
 const MAX_DIGITS: usize = 48;
