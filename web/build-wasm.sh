@@ -31,7 +31,7 @@ make() {
     local name=$1
     shift
     "$cargo" build ${flags[@]+"${flags[@]}"} -p lwc-wasm --target $target --profile dist --locked "$@"
-    npx --no-install wasm-opt -O3 --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int \
+    npx --no-install wasm-opt -O3 --converge --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int \
         --enable-sign-ext --enable-mutable-globals --strip-debug --strip-producers \
         "$CARGO_TARGET_DIR/$target/dist/lwc_wasm.wasm" -o "dist/$name"
     printf '%s: %s bytes, %s gzip\n' "$name" "$(stat -c %s "dist/$name")" "$(gzip -9c "dist/$name" | wc -c)"

@@ -1,5 +1,6 @@
 //! One pass after the other, applied to the mesh.
 
+use super::built_with::STREAMS;
 use super::running::Running;
 use super::state::PassDecoder;
 use super::stream_info::{PassInfo, PassKind};
@@ -44,7 +45,7 @@ impl PassDecoder {
 
     /// Bytes of memory that a pass may take, the buffer of the stream not counted.
     pub(super) fn memory_for(&self, pass: &PassInfo) -> u64 {
-        let tables = if self.profile == Profile::Fast { MEMORY_OF_MODELS } else { 0 };
+        let tables = if STREAMS && self.profile == Profile::Fast { MEMORY_OF_MODELS } else { 0 };
         let base = match pass.row.action {
             Action::Base { .. } => 160 * u64::from(pass.triangles) + tables,
             _ => 0,

@@ -38,10 +38,23 @@ pub(super) struct Running {
 enum Coder {
     Range(RangeState),
     Streams(Box<StreamReader>),
-    /// A base mesh in tables, which has stages of its own.
-    Tables(Box<BaseInTables>),
+    /// A base mesh in tables, which has stages of its own. Behind a trait, so that decoders without the profile fast have
+    /// nothing of it, not even what frees it.
+    Tables(Box<dyn OwnStages>),
     /// Taken out while the pass goes on.
     AtWork,
+}
+
+/// A pass that is decoded by itself.
+trait OwnStages: Send + Sync {
+    /// Goes on; the mesh once it is whole.
+    fn advance(&mut self, payload: &[u8], work: &mut WorkBudget) -> Result<Option<GridMesh>, Malformed>;
+}
+
+impl OwnStages for BaseInTables {
+    fn advance(&mut self, payload: &[u8], work: &mut WorkBudget) -> Result<Option<GridMesh>, Malformed> {
+        Self::advance(self, payload, work)
+    }
 }
 
 impl Coder {
@@ -113,7 +126,8 @@ impl Running {
         payload: &[u8],
         work: &mut WorkBudget,
     ) -> Result<Option<Patches>, Malformed> {
-        let payload = &payload[self.num_method_bytes..];
+        let payload =
+            if STREAMS { payload.get(self.num_method_bytes..).unwrap_or_default() } else { payload };
         match std::mem::replace(&mut self.coder, Coder::AtWork) {
             Coder::Range(state) => {
                 let mut coder = RangeDecoder::resume(payload, &state);
