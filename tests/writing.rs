@@ -336,9 +336,9 @@ fn merged_scenes_have_one_set_whatever_its_types() {
         again.attributes.list.iter().filter(|a| matches!(a.semantic, Semantic::TexCoord(_))).count(),
         1
     );
-    // In a stream each keeps its type.
+    // In a stream, too.
     let packed = scene.pack().unwrap();
-    assert_eq!(packed.attributes.list.iter().filter(|a| a.name == "TEXCOORD_0").count(), 2);
+    assert_eq!(packed.attributes.list.iter().filter(|a| a.name == "TEXCOORD_0").count(), 1);
 }
 
 // --- OBJ -----------------------------------------------------------------------------------------------
