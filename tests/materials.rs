@@ -93,13 +93,14 @@ fn images_of_maps_are_inside() {
     assert!(ignored[2].starts_with("image `lib/missing.png`: "), "{ignored:?}");
     assert_eq!(ignored[3..], ["map_d of materials"]);
 
-    // They are in a GLB elsewhere, and OBJ names its library as before.
+    // They are in a GLB elsewhere. OBJ names its library as before, and nobody writes that.
     let mut bytes = Vec::new();
     io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Glb).unwrap();
     assert_eq!(carried(&io::read_bytes(&bytes, Format::Glb).unwrap()).1.images, [PNG, JPEG]);
     let mut text = Vec::new();
     let report = io::write_with_attributes_to(&mut text, &file.mesh, &file.attributes, Format::Obj).unwrap();
-    assert!(report.is_empty() && text.starts_with(b"mtllib lib\\a b.mtl\n"), "{report:?}");
+    assert!(text.starts_with(b"mtllib lib\\a b.mtl\n"));
+    assert_eq!(report.to_string(), "left out: materials except their names: glTF keeps them");
 }
 
 #[test]
@@ -158,6 +159,11 @@ fn textures_of_ply_are_materials() {
     assert_eq!(json["materials"], json!([{ "name": "skin one.png", "pbrMetallicRoughness": surface }]));
     let names = again.attributes.list.iter().find_map(|attribute| attribute.values.names());
     assert_eq!(names.unwrap(), ["skin one.png"]);
+    let mut ply = Vec::new();
+    let losses = io::write_with_attributes_to(&mut ply, &file.mesh, &file.attributes, Format::Ply)
+        .unwrap()
+        .to_string();
+    assert!(losses.contains("left out: materials except their names"), "{losses}");
 }
 
 /// Materials are known by their names.

@@ -336,6 +336,7 @@ fn merged_scenes_have_one_set_whatever_its_types() {
         again.attributes.list.iter().filter(|a| matches!(a.semantic, Semantic::TexCoord(_))).count(),
         1
     );
+    // In a stream, too.
     let packed = scene.pack().unwrap();
     assert_eq!(packed.attributes.list.iter().filter(|a| a.name == "TEXCOORD_0").count(), 1);
 }
@@ -450,5 +451,153 @@ fn attributes_that_do_not_fit_are_refused_before_anything_is_written() {
     attributes.list = vec![Attribute::new("q", Semantic::Generic, Domain::Vertex, 1, Values::U8(vec![1]))];
     for format in [Format::Obj, Format::Ply, Format::Stl, Format::Glb] {
         assert!(WriteOptions::new().losses_of(&triangle_at(0.0), &attributes, format).is_err());
+    }
+}
+
+// --- What has no value, no place, or another name ---------------------------------------------------------
+
+fn numbers(name: &str, n: usize, values: Values) -> Attribute {
+    Attribute::new(name, Semantic::Generic, Domain::Vertex, n, values)
+}
+
+#[test]
+fn whole_numbers_are_exact_in_gltf_or_left_out() {
+    let ids = |last: f64| numbers("id", 1, Values::F64(vec![1.0, 2.0, last]));
+    let losses = |last| written(&file(triangle_at(0.0), vec![ids(last)]), Format::Glb).1;
+    let far = f64::from((1 << 24) + 1);
+    assert_eq!(subjects(&losses(far), LossKind::Dropped), ["id"]);
+    assert_eq!(subjects(&losses(far - 1.0), LossKind::Dropped), [""; 0]);
+    assert_eq!(subjects(&losses(far + 0.5), LossKind::ValuesRounded), ["id"], "it measures something");
+}
+
+#[test]
+fn values_that_are_none_are_made_up_and_counted() {
+    let colour = colours(
+        "red green blue",
+        Domain::Vertex,
+        Values::F32(vec![f32::NAN, 0.0, f32::INFINITY, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]),
+    );
+    let losses = written(&file(triangle_at(0.0), vec![colour]), Format::Ply).1;
+    assert_eq!(losses.to_string(), "red green blue (1): 2 of 9 values made up where there was none");
+    let normals = Values::F32(vec![0.0, 0.0, 0.0, f32::NAN, 0.0, 1.0, 0.0, 2.0, 0.0]);
+    let normals = Attribute::new("vn", Semantic::Normal, Domain::Vertex, 3, normals);
+    let (glb, losses) = written(&file(triangle_at(0.0), vec![normals]), Format::Glb);
+    assert_eq!(subjects(&losses, LossKind::ValuesFilled), ["vn (0 0 1)"]);
+    let counts: Vec<_> = losses.iter().map(|loss| (loss.count, loss.total)).collect();
+    assert_eq!(counts, [(Some(2), Some(3)), (Some(1), Some(3))]);
+    assert_eq!(named(&read(glb, Format::Glb), "NORMAL").number(2, 1), Some(1.0));
+}
+
+#[test]
+fn names_that_ply_cannot_have_are_said() {
+    let texture = Attribute::new("vt", Semantic::TexCoord(0), Domain::Vertex, 3, Values::F32(vec![0.5; 9]));
+    let list = vec![
+        numbers("_a b", 1, Values::U8(vec![1, 2, 3])),
+        texture,
+        numbers("heat", 1, Values::U8(vec![1, 2, 3])),
+        colours("COLOR_0", Domain::Vertex, Values::U8(vec![0; 9])),
+    ];
+    let mut mesh = file(triangle_at(0.0), list);
+    mesh.attributes.metadata =
+        vec![("crs.wkt".to_owned(), "A\nB".to_owned()), ("crs.x".to_owned(), "C".to_owned())].into();
+    let losses = written(&mesh, Format::Ply).1;
+    assert_eq!(
+        subjects(&losses, LossKind::NamesChanged),
+        ["_a b (_a_b_0)", "vt (vt_0 vt_1 vt_2)", "crs.wkt (line breaks)"]
+    );
+}
+
+#[test]
+fn what_nobody_has_a_value_of_is_left_out_of_ply() {
+    let normals = |indices: [u32; 3]| Attribute {
+        indices: Some(indices.to_vec()),
+        ..Attribute::new("vn", Semantic::Normal, Domain::Corner, 3, Values::F32(vec![0.0, 0.0, 1.0]))
+    };
+    let (ply, losses) = written(&file(triangle_at(0.0), vec![normals([NO_ENTRY; 3])]), Format::Ply);
+    assert_eq!(losses.to_string(), "left out: vn: it has no values");
+    assert_eq!(read(ply, Format::Ply).attributes.list, []);
+    let (_, losses) = written(&file(triangle_at(0.0), vec![normals([0, NO_ENTRY, 0])]), Format::Ply);
+    assert_eq!(subjects(&losses, LossKind::ValuesFilled).len(), 1);
+}
+
+#[test]
+fn tiny_positions_are_not_lost_without_a_word() {
+    let tiny = TriMesh::new(vec![[0.0; 3], [1e-200, 0.0, 0.0], [0.0, 1e-200, 0.0]], vec![[0, 1, 2]]).unwrap();
+    let tiny = file(tiny, vec![]);
+    for format in [Format::Ply, Format::Obj] {
+        let (bytes, losses) = written(&tiny, format);
+        assert!(losses.is_empty() && read(bytes, format).mesh == tiny.mesh, "{format:?}: {losses}");
+    }
+    for format in [Format::Stl, Format::Glb] {
+        let losses = written(&tiny, format).1;
+        let rounded = losses.iter().find(|loss| loss.kind == LossKind::PositionsRounded).unwrap();
+        assert_eq!((rounded.count, rounded.largest_error), (Some(2), Some(1e-200)), "{format:?}");
+    }
+}
+
+// --- Scenes --------------------------------------------------------------------------------------------
+
+/// So many places of a mesh of one strip of triangles.
+fn repeated(num_triangles: u32, num_places: usize) -> Scene {
+    let positions = (0..num_triangles + 2).map(|k| [f64::from(k), f64::from(k % 2), 0.0]).collect();
+    let strip = TriMesh::new(positions, (0..num_triangles).map(|k| [k, k + 1, k + 2]).collect()).unwrap();
+    let mut packed = Scene::from(file(strip, vec![]));
+    let place = |k: usize| {
+        let mut transform = IDENTITY;
+        transform[2][3] = k as f64;
+        Instance { mesh: 0, name: String::new(), transform }
+    };
+    packed.instances = (0..num_places).map(place).collect();
+    let packed = packed.pack().unwrap();
+    Scene::unpack(&packed.mesh, &packed.attributes).unwrap().unwrap()
+}
+
+#[test]
+fn instances_are_written_unless_there_are_billions() {
+    let losses = |places| WriteOptions::new().losses_of_scene(&repeated(2000, places), Format::Ply);
+    assert!(losses(150).is_ok());
+    let error = losses(200_000).unwrap_err().to_string();
+    assert!(error.contains("200000 instances out of proportion"), "{error}");
+}
+
+#[test]
+fn a_scene_without_places_says_so() {
+    for format in [Format::Obj, Format::Ply, Format::Stl] {
+        let losses = WriteOptions::new().losses_of_scene(&repeated(2, 0), format).unwrap();
+        assert_eq!(subjects(&losses, LossKind::Dropped), ["meshes outside the scene"], "{format:?}");
+    }
+}
+
+#[test]
+fn the_order_of_scenes_and_their_isolated_vertices_are_kept() {
+    let mesh = |x: f64, triangles: Vec<[u32; 3]>| {
+        let place = |k: u32| [x + f64::from(k), f64::from(k * k) / 3.0, f64::from(k % 3)];
+        let heat = numbers("heat", 1, Values::F32((0..7).map(|k| k as f32 / 7.0).collect()));
+        file(TriMesh::new((0..7).map(place).collect(), triangles).unwrap(), vec![heat])
+    };
+    // Vertices 3 and 6 of the first have no triangles, and vertex 5 of the second.
+    let first = mesh(0.1, vec![[5, 1, 4], [4, 1, 2], [0, 5, 4]]);
+    let second = mesh(20.7, vec![[6, 4, 2], [0, 3, 1], [6, 2, 3]]);
+    let place = |mesh: usize| Instance { mesh, name: format!("m{mesh}"), transform: IDENTITY };
+    for meshes in [vec![first.clone(), second], vec![first]] {
+        let mut scene = Scene::from(file(TriMesh::default(), vec![]));
+        scene.instances = (0..meshes.len()).map(place).collect();
+        scene.meshes = meshes;
+        let packed = scene.pack().unwrap();
+        let mut options = lwc::EncodeOptions::default();
+        (options.lossless, options.keep_order, options.keep_isolated) = (true, true, true);
+        let encoded =
+            lwc::encode_with_attributes(&packed.mesh, &packed.attributes, &options, &|_| ()).unwrap();
+        let mut decoder = lwc::Decoder::new(lwc::Limits::default());
+        decoder.push(&encoded.bytes).unwrap();
+        let (mesh, attributes) = decoder.to_tri_mesh_with_attributes().unwrap();
+        let again = Scene::unpack(&mesh, &attributes).unwrap().unwrap();
+        assert_eq!(again.instances, scene.instances);
+        for (again, before) in again.meshes.iter().zip(&scene.meshes) {
+            assert_eq!(again.mesh, before.mesh);
+            let (again, before) = (named(again, "heat"), named(before, "heat"));
+            let values = |a: &Attribute| (0..7).map(|v| a.number(a.entry(v).unwrap(), 0)).collect::<Vec<_>>();
+            assert_eq!(values(again), values(before));
+        }
     }
 }

@@ -16,6 +16,11 @@ use crate::losses::{Loss, LossKind, Losses, Stage};
 use crate::mesh::{Attributes, TriMesh};
 use std::io::Write;
 
+/// What is written may be out of proportion to the stream that it comes from, since somebody asked for it, as if that had
+/// this many bytes: 2²⁸ vertices and triangles of all instances.
+#[cfg(feature = "gltf")]
+const MIN_NUM_BYTES: usize = 1 << 24;
+
 /// A file that can be written.
 pub(super) struct Plan<'a> {
     file: File<'a>,
@@ -98,7 +103,9 @@ impl<'a> Plan<'a> {
             return Ok(None);
         }
         let too_large = |error: ReadError| WriteError::Unrepresentable { message: error.to_string() };
-        scene.clone().merge().map(Some).map_err(too_large)
+        let mut scene = scene.clone();
+        scene.num_bytes = scene.num_bytes.max(MIN_NUM_BYTES);
+        scene.merge().map(Some).map_err(too_large)
     }
 
     /// Writes the file.
@@ -134,8 +141,9 @@ fn container(format: Format) -> gltf::Container {
 /// What a format does not have of what the mesh has once for all.
 fn others_left_out(attributes: &Attributes, file: &File) -> Losses {
     let (has_materials, has_metadata) = match file {
-        File::Obj(_) => (!attributes.material_libraries.is_empty(), false),
-        File::Ply(_) => (attributes.list.iter().any(|attribute| attribute.name == ply::TEXTURE_FILE), true),
+        // Names of files, which are not written.
+        File::Obj(_) => (false, false),
+        File::Ply(_) => (false, true),
         File::Stl(_) => (false, false),
         #[cfg(feature = "gltf")]
         File::Gltf(..) => (true, true),

@@ -90,11 +90,17 @@ pub fn converted<'a>(
     let turned = |k: usize| if k % attribute.num_components == 3 { Turn::None } else { turn };
     for k in 0..attribute.values.len() {
         let number = attribute.values.number(k).unwrap_or(0.0) / from.one();
-        let exact = turned(k).there(if (number as f32).is_finite() { number } else { 1.0 });
+        let is_usable = (number as f32).is_finite();
+        let exact = if is_usable { turned(k).there(number) } else { 1.0 };
         let bits = bits_of(exact, to);
         values.push_bits(bits);
         let written = to.value(bits) / to.one();
-        measured.add(exact - written, is_same(turned(k).back(written), number, from));
+        if number.is_finite() {
+            let error = if is_usable { exact - written } else { number - written };
+            measured.add(error, is_same(turned(k).back(written), number, from));
+        } else {
+            measured.num_made_up += 1;
+        }
     }
     measured.say(&attribute, values.len(), losses);
     Cow::Owned(Attribute { values, is_normalized: is_fraction, ..attribute.into_owned() })
@@ -136,6 +142,8 @@ fn is_same(back: f64, number: f64, from: ComponentType) -> bool {
 /// What conversion did to colours.
 #[derive(Default)]
 struct Measured {
+    /// Numbers that were none before.
+    num_made_up: usize,
     count: usize,
     largest: f64,
 }
@@ -149,6 +157,11 @@ impl Measured {
     }
 
     fn say(&self, attribute: &Attribute, total: usize, losses: &mut Losses) {
+        if self.num_made_up > 0 {
+            let subject = format!("{} (1)", attribute.name);
+            let loss = Loss::new(Stage::Writing, LossKind::ValuesFilled, subject);
+            losses.push(loss.count(self.num_made_up).of(total));
+        }
         if self.count > 0 {
             let loss = Loss::new(Stage::Writing, LossKind::ValuesConverted, attribute.name.clone());
             losses.push(loss.count(self.count).of(total).at_most(self.largest));
@@ -201,7 +214,9 @@ mod tests {
         let floats = vec![-0.5, 0.2, 1.5, f32::NAN, 0.4, 1.0];
         let (bytes, losses) = through(&colours("c", 3, Values::F32(floats)), PLY);
         assert_eq!(bytes.values, Values::U8(vec![0, 51, 255, 255, 102, 255]));
-        assert_eq!(losses.iter().next().unwrap().largest_error, Some(0.5));
+        let [made_up, converted] = [0, 1].map(|k| losses.iter().nth(k).unwrap().clone());
+        assert_eq!(made_up.to_string(), "c (1): 1 of 6 values made up where there was none");
+        assert_eq!((converted.count, converted.largest_error), (Some(2), Some(0.5)));
         let (bytes, losses) = through(&colours("v.rgb", 3, Values::F64(vec![0.2, 0.4, 1.0])), PLY);
         assert_eq!((bytes.values, losses.len()), (Values::U8(vec![51, 102, 255]), 0));
     }

@@ -19,13 +19,22 @@ pub struct Rounding {
 
 /// How far a position moves if it is written as float32 around an origin.
 fn shift(position: [f64; 3], origin: [f64; 3]) -> f64 {
-    let square = |k: usize| {
+    length([0, 1, 2].map(|k| {
         let local = position[k] - origin[k];
-        let moved = f64::from(local as f32) + origin[k] - position[k];
-        moved * moved
-    };
-    let squares = square(0) + square(1) + square(2);
-    if squares == 0.0 { 0.0 } else { squares.sqrt() }
+        f64::from(local as f32) + origin[k] - position[k]
+    }))
+}
+
+/// The length of a vector, also of one whose squares are 0 or infinite.
+fn length(vector: [f64; 3]) -> f64 {
+    /// Squares of what is between these are as precise as any.
+    const USUAL: std::ops::Range<f64> = 1e-140..1e150;
+    let norm = |vector: [f64; 3]| vector.map(|c| c * c).iter().sum::<f64>().sqrt();
+    let largest = vector.iter().fold(0.0, |largest, c| c.abs().max(largest));
+    if largest == 0.0 || !largest.is_finite() || USUAL.contains(&largest) {
+        return norm(vector);
+    }
+    largest * norm(vector.map(|c| c / largest))
 }
 
 /// What becomes of the positions as float32 around an origin; `None` if none of them moves.
@@ -54,7 +63,7 @@ fn mean_edge_lengths(mesh: &TriMesh) -> Vec<f64> {
     for &[a, b, c] in mesh.triangles() {
         for (from, to) in [(a, b), (b, c), (c, a)] {
             let (p, q) = (positions[from as usize], positions[to as usize]);
-            let length = [0, 1, 2].map(|k| (q[k] - p[k]) * (q[k] - p[k])).iter().sum::<f64>().sqrt();
+            let length = length([0, 1, 2].map(|k| q[k] - p[k]));
             for vertex in [from, to] {
                 let (sum, count) = &mut sums[vertex as usize];
                 *sum += length;
@@ -119,6 +128,18 @@ mod tests {
         assert!((found.largest - 0.2).abs() < 1e-6 && (0.1..0.3).contains(&found.in_edges), "{found:?}");
         let near = rounding(&far, [4_600_000.0, 0.0, 0.0]).unwrap();
         assert!(near.largest < 1e-7, "{near:?}");
+    }
+
+    #[test]
+    fn what_is_too_small_to_be_squared_is_seen() {
+        for size in [1e-200, 1e-300, f64::from_bits(9)] {
+            let tiny = triangle(0.0, size);
+            let found = rounding(&tiny, [0.0; 3]).unwrap();
+            assert_eq!((found.count, found.largest), (2, size));
+            assert!(found.in_edges > 0.5, "{found:?}");
+            assert!(!is_float32(&tiny, &WriteOptions::new()));
+        }
+        assert!((length([3e200, 4e200, 0.0]) / 5e200 - 1.0).abs() < 1e-15);
     }
 
     #[test]

@@ -104,6 +104,19 @@ pub(super) fn property_names(attribute: &Attribute) -> Vec<String> {
     (0..num_components).map(|k| format!("{stem}_{k}")).collect()
 }
 
+/// Whether readers know properties of these names as the attribute: by its own name, or by one that has its meaning.
+pub(super) fn is_readable(attribute: &Attribute, names: &[String]) -> bool {
+    let joined = names.join(" ");
+    let has_meaning = match attribute.semantic {
+        Semantic::Normal => joined == "nx ny nz",
+        Semantic::Color(_) => matches!(&*joined, "red green blue" | "red green blue alpha"),
+        Semantic::TexCoord(_) => joined == "s t",
+        Semantic::Material => joined == "material_index",
+        _ => false,
+    };
+    has_meaning || joined == attribute.name
+}
+
 /// What PLY calls a type. The names with bits are as old as `short` and `ushort`, which meshio does not know.
 pub(super) fn scalar_name(scalar: ComponentType) -> &'static str {
     match scalar {

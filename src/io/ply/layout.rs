@@ -1,6 +1,6 @@
 //! Which attribute is written where in PLY, and as what.
 
-use super::columns::property_names;
+use super::columns::{is_readable, property_names};
 use super::textures::TEXTURE_FILE;
 use crate::{
     io::{
@@ -47,6 +47,9 @@ impl<'a> Layout<'a> {
         if !attributes.material_libraries.is_empty() {
             losses.push(dropped("mtllib", "OBJ keeps it"));
         }
+        let (numbers, empty): (Vec<&Attribute>, Vec<&Attribute>) =
+            numbers.into_iter().partition(|attribute| has_values(attribute, mesh));
+        empty.iter().for_each(|attribute| losses.push(dropped(&attribute.name, "it has no values")));
         let written = numbers.into_iter().map(|attribute| written_as(attribute, options, losses)).collect();
         let (mesh, written) = without_seams(mesh, joined(written, mesh), options, losses)?;
         let textures = textures.first().and_then(|attribute| attribute.values.names()).unwrap_or_default();
@@ -153,7 +156,13 @@ fn may_be_wedge(attribute: &Attribute) -> bool {
     matches!(attribute.semantic, Semantic::TexCoord(_)) && attribute.num_components == 2 && is_float
 }
 
-/// No two properties of an element have one name.
+/// Whether an element has a value, if there are any elements.
+fn has_values(attribute: &Attribute, mesh: &TriMesh) -> bool {
+    let num_elements = attribute.domain.num_elements(mesh);
+    num_elements == 0 || (0..num_elements).any(|element| attribute.entry(element).is_some())
+}
+
+/// No two properties of an element have one name. Says which names are others than those that the attributes had.
 fn make_unique(columns: &mut [Column], reserved: &[&str], losses: &mut Losses) {
     let mut known: HashSet<String> = reserved.iter().map(|&name| name.to_owned()).collect();
     for Column { attribute, names } in columns {
@@ -161,6 +170,8 @@ fn make_unique(columns: &mut [Column], reserved: &[&str], losses: &mut Losses) {
             let numbered = |k: usize| (0..names.len()).map(|c| format!("{}_{k}_{c}", names[c])).collect();
             let free = (2..).map(numbered).find(|names: &Vec<String>| are_free(names, &known));
             *names = free.unwrap_or_default();
+        }
+        if !is_readable(attribute, names) {
             let subject = format!("{} ({})", attribute.name, names.join(" "));
             losses.push(Loss::new(Stage::Writing, LossKind::NamesChanged, subject));
         }

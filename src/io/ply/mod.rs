@@ -16,7 +16,6 @@ mod scalar;
 mod textures;
 mod write;
 
-pub(super) use textures::TEXTURE_FILE;
 pub(super) use write::Plan;
 
 use super::{MeshFile, ReadError, beside::Folder, builder::MeshBuilder, builder::fan, source::Source};

@@ -8,7 +8,7 @@ use crate::{
         WriteError, WriteOptions,
         convert::{check_float32, is_float32, loss_of, rounding},
     },
-    losses::Losses,
+    losses::{Loss, LossKind, Losses, Stage},
     mesh::{Attribute, Attributes, ComponentType, TriMesh},
 };
 use std::{
@@ -42,6 +42,14 @@ impl<'a> Plan<'a> {
             losses.append(rounding(mesh, [0.0; 3]).map(|r| loss_of(r, mesh, remedy)).into_iter().collect());
         }
         let (mesh, layout) = Layout::new(mesh, attributes, options, losses)?;
+        let texts = attributes.metadata.iter().map(|(key, text)| (key.as_str(), text));
+        let textures = layout.textures.iter().map(|name| (TEXTURE_FILE, name));
+        for (key, _) in
+            texts.chain(textures).filter(|(key, text)| one_line(text) != **text || one_line(key) != *key)
+        {
+            let subject = format!("{key} (line breaks)");
+            losses.push(Loss::new(Stage::Writing, LossKind::NamesChanged, subject).count(1));
+        }
         Ok(Self { mesh, layout, metadata: &attributes.metadata, is_float })
     }
 

@@ -3,7 +3,7 @@
 use super::{Scene, unify::Layouts};
 use crate::{
     io::{MeshFile, ReadError, builder::MeshBuilder},
-    mesh::{Attribute, Domain, IDENTITY, Instance, NO_ENTRY, Semantic, Values},
+    mesh::{Attribute, Domain, IDENTITY, Instance, NO_ENTRY, Semantic, TriMesh, Values},
 };
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -127,11 +127,17 @@ impl IndexedNames {
 struct Column {
     attribute: Attribute,
     rows: Vec<u32>,
+    /// Vertices without triangles, and their rows.
+    loose: Vec<(u32, u32)>,
     /// Of names, each of which is there once.
     row_of: HashMap<String, u32>,
 }
 
 impl Column {
+    fn new(attribute: Attribute, rows: Vec<u32>) -> Self {
+        Self { attribute, rows, loose: Vec::new(), row_of: HashMap::new() }
+    }
+
     /// Adds a table; gives the row in this one that each of its rows is now.
     fn append(&mut self, other: &Attribute) -> Vec<u32> {
         let first = self.attribute.num_entries() as u32;
@@ -178,11 +184,11 @@ impl Merger {
         if builder.positions[first_vertex as usize..].iter().flatten().any(|c| !c.is_finite()) {
             return Err(ReadError::TooLarge { message: format!("coordinates of node `{name}`") });
         }
-        // Corner k of a triangle is corner `corners[k]` of the triangle before.
         let corners = if is_mirrored { [0, 2, 1] } else { [0, 1, 2] };
         let triangle = |t: &[u32; 3]| corners.map(|corner| first_vertex + t[corner]);
         builder.triangles.extend(mesh.triangles().iter().map(triangle));
 
+        let place = Place { first_vertex, num_before, corners, loose: loose_vertices(mesh) };
         for attribute in &attributes.list {
             let turned;
             let attribute = match motion {
@@ -197,7 +203,7 @@ impl Merger {
                 }
                 _ => attribute,
             };
-            self.add_attribute(file, attribute, num_before, corners)?;
+            self.add_attribute(mesh, attribute, &place)?;
         }
         Ok(())
     }
@@ -215,10 +221,9 @@ impl Merger {
 
     fn add_attribute(
         &mut self,
-        file: &MeshFile,
+        mesh: &TriMesh,
         attribute: &Attribute,
-        num_before: usize,
-        corners: [usize; 3],
+        place: &Place,
     ) -> Result<(), ReadError> {
         let domain = if attribute.domain == Domain::Triangle { Domain::Triangle } else { Domain::Corner };
         let is_like = |column: &Column| {
@@ -233,10 +238,11 @@ impl Merger {
         let known = self.columns.iter().position(is_like).unwrap_or_else(|| {
             let empty = attribute.values.emptied();
             let attribute = Attribute { domain, values: empty, indices: None, ..attribute.clone() };
-            self.columns.push(Column { attribute, rows: Vec::new(), row_of: HashMap::new() });
+            self.columns.push(Column::new(attribute, Vec::new()));
             self.columns.len() - 1
         });
-        self.builder.check_rows(self.columns.len(), 3 * self.builder.triangles.len())?;
+        let num_elements = self.builder.positions.len().max(3 * self.builder.triangles.len());
+        self.builder.check_rows(self.columns.len(), num_elements)?;
         let column = &mut self.columns[known];
         let num_rows = column.attribute.num_entries() + attribute.num_entries();
         if num_rows >= NO_ENTRY as usize {
@@ -245,12 +251,18 @@ impl Merger {
         let row_of = column.append(attribute);
         let rows = &mut column.rows;
         let per_triangle = if domain == Domain::Triangle { 1 } else { 3 };
-        rows.resize(per_triangle * num_before, NO_ENTRY);
-        for t in 0..file.mesh.num_triangles() {
-            rows.extend(corners[..per_triangle].iter().map(|&corner| {
-                let row = attribute.entry_at_corner(&file.mesh, t, corner);
+        rows.resize(per_triangle * place.num_before, NO_ENTRY);
+        for t in 0..mesh.num_triangles() {
+            rows.extend(place.corners[..per_triangle].iter().map(|&corner| {
+                let row = attribute.entry_at_corner(mesh, t, corner);
                 row.map_or(NO_ENTRY, |row| row_of[row])
             }));
+        }
+        if attribute.domain == Domain::Vertex {
+            let row = |&vertex: &u32| {
+                Some((place.first_vertex + vertex, row_of[attribute.entry(vertex as usize)?]))
+            };
+            column.loose.extend(place.loose.iter().filter_map(row));
         }
         Ok(())
     }
@@ -264,24 +276,48 @@ impl Merger {
     ) {
         let rows = num_triangles.zip(0..).flat_map(|(count, row)| std::iter::repeat_n(row, count)).collect();
         let attribute = Attribute::new(name, Semantic::Object, Domain::Triangle, 1, table);
-        self.columns.push(Column { attribute, rows, row_of: HashMap::new() });
+        self.columns.push(Column::new(attribute, rows));
     }
 
     pub(super) fn finish(mut self) -> Result<MeshFile, ReadError> {
-        for Column { attribute, rows, .. } in self.columns {
+        let mut loose = Vec::with_capacity(self.columns.len());
+        for Column { attribute, rows, loose: of_column, .. } in self.columns {
+            loose.push(of_column);
             self.builder.attributes.list.push(Attribute { indices: Some(rows), ..attribute });
         }
         self.builder.attributes.metadata = self.metadata.into();
         self.builder.attributes.material_libraries = self.libraries.list.into();
         let mut file = self.builder.finish()?;
         // Where no instance has a seam, corners are more than is needed.
-        for attribute in &mut file.attributes.list {
+        for (attribute, loose) in file.attributes.list.iter_mut().zip(loose) {
             if let Some(smooth) = attribute.without_seams(&file.mesh) {
                 *attribute = smooth;
+                // Vertices have rows of their own then.
+                let indices = attribute.indices.get_or_insert_default();
+                loose.iter().for_each(|&(vertex, row)| indices[vertex as usize] = row);
+            } else if !loose.is_empty() {
+                file.report.ignore(&format!("{} of isolated vertices", attribute.name));
             }
         }
         Ok(file)
     }
+}
+
+/// Where a mesh is among all.
+struct Place {
+    first_vertex: u32,
+    /// Triangles before it.
+    num_before: usize,
+    /// Corner k of a triangle is corner `corners[k]` of the triangle before.
+    corners: [usize; 3],
+    /// Vertices of the mesh without triangles: values at corners do not reach them.
+    loose: Vec<u32>,
+}
+
+fn loose_vertices(mesh: &TriMesh) -> Vec<u32> {
+    let mut is_loose = vec![true; mesh.num_vertices()];
+    mesh.triangles().as_flattened().iter().for_each(|&vertex| is_loose[vertex as usize] = false);
+    (0..mesh.num_vertices() as u32).filter(|&vertex| is_loose[vertex as usize]).collect()
 }
 
 /// Directions stay as they are then, bit for bit.

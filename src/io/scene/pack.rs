@@ -48,7 +48,9 @@ impl Scene {
     }
 
     /// The scene that a mesh packed by [`Scene::pack`] is, at any level; `None` if it is not such a mesh.
-    /// Meshes that have no triangles have no vertices either.
+    ///
+    /// Vertices come in the order of the packed mesh. Nothing says of which mesh a vertex without triangles is: it goes to
+    /// that of the last vertex before it that has some, or else to the first.
     ///
     /// # Errors
     /// If the meshes repeat names out of proportion to how often the stream has them.
@@ -59,21 +61,17 @@ impl Scene {
             let attribute = &attributes.list[which?];
             attribute.number(attribute.entry(t)?, 0)
         };
-        let mut parts = vec![Part::default(); table.exponents.len()];
-        for t in 0..mesh.num_triangles() {
-            let part = number(t).map_or(0, |number| number as usize);
-            if let Some(part) = parts.get_mut(part) {
-                part.triangles.push(t);
-            }
-        }
+        let parts = parts(mesh, table.exponents.len(), |t| number(t).map_or(0, |number| number as usize));
         let listed = attributes.list.iter().enumerate().filter(|&(k, _)| Some(k) != which);
         let listed: Vec<&Attribute> = listed.map(|(_, attribute)| attribute).collect();
         // Meshes and instances may repeat what the stream has once, but not beyond reason.
         let num_bytes = size_of::<[f64; 6]>() * mesh.num_vertices();
         let mut names = NameBytes::of(&listed, num_bytes);
+        let mut local = vec![NO_ENTRY; mesh.num_vertices()];
         let mut meshes = Vec::with_capacity(parts.len());
         for (part, &exponent) in parts.iter().zip(&table.exponents) {
-            let mut file = part.extract(mesh, &listed, power_of_two(exponent).recip(), &mut names)?;
+            let mut file =
+                part.extract(mesh, &mut local, &listed, power_of_two(exponent).recip(), &mut names)?;
             file.attributes.material_libraries = attributes.material_libraries.clone();
             file.attributes.metadata = attributes.metadata.clone();
             meshes.push(file);
@@ -122,29 +120,55 @@ fn power_of_two(exponent: i8) -> f64 {
     2f64.powi(i32::from(exponent))
 }
 
-/// The triangles of one mesh.
+/// What is of one mesh, in the order of the packed mesh.
 #[derive(Clone, Default)]
 struct Part {
+    vertices: Vec<u32>,
     triangles: Vec<usize>,
 }
 
+/// The meshes, given which of them each triangle is of. Triangles of others are of none.
+fn parts(mesh: &TriMesh, num_parts: usize, part_of: impl Fn(usize) -> usize) -> Vec<Part> {
+    let mut parts = vec![Part::default(); num_parts];
+    // Of each vertex the mesh of its last triangle.
+    let mut owners = vec![None; mesh.num_vertices()];
+    for (t, triangle) in mesh.triangles().iter().enumerate() {
+        let owner = part_of(t);
+        triangle.iter().for_each(|&vertex| owners[vertex as usize] = Some(owner));
+        if let Some(part) = parts.get_mut(owner) {
+            part.triangles.push(t);
+            part.vertices.extend(triangle);
+        }
+    }
+    let mut last = 0;
+    for (vertex, owner) in owners.into_iter().enumerate() {
+        match (owner, parts.get_mut(last.min(num_parts.saturating_sub(1)))) {
+            (Some(owner), _) => last = owner,
+            (None, Some(part)) => part.vertices.push(vertex as u32),
+            (None, None) => {}
+        }
+    }
+    for part in &mut parts {
+        part.vertices.sort_unstable();
+        part.vertices.dedup();
+    }
+    parts
+}
+
 impl Part {
+    /// `local` has room for a number of each vertex of the packed mesh; what is in it does not matter.
     fn extract(
         &self,
         mesh: &TriMesh,
+        local: &mut [u32],
         attributes: &[&Attribute],
         factor: f64,
         names: &mut NameBytes,
     ) -> Result<MeshFile, ReadError> {
-        let mut name_of: HashMap<u32, u32> = HashMap::new();
-        let mut vertices = Vec::new();
-        let mut name = |v: u32| {
-            *name_of.entry(v).or_insert_with(|| {
-                vertices.push(v);
-                vertices.len() as u32 - 1
-            })
-        };
-        let triangles = self.triangles.iter().map(|&t| mesh.triangles()[t].map(&mut name)).collect();
+        let vertices = &self.vertices;
+        vertices.iter().zip(0..).for_each(|(&vertex, number)| local[vertex as usize] = number);
+        let triangle = |&t: &usize| mesh.triangles()[t].map(|vertex| local[vertex as usize]);
+        let triangles = self.triangles.iter().map(triangle).collect();
         let positions = vertices.iter().map(|&v| mesh.positions()[v as usize].map(|c| c * factor)).collect();
         let mut file =
             MeshFile { mesh: TriMesh::from_valid_parts(positions, triangles), ..MeshFile::default() };

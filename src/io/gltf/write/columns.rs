@@ -71,7 +71,7 @@ fn written_as<'a>(
         _ => representable(oriented(attribute, true, losses), losses),
     };
     if written.is_none() {
-        let remedy = "glTF has integers up to 16777216 and finite numbers; PLY keeps it";
+        let remedy = "glTF has whole numbers up to 16777216 and finite numbers; PLY keeps it";
         losses.push(dropped(&attribute.name, remedy));
     }
     written
@@ -167,7 +167,7 @@ fn representable<'a>(attribute: Cow<'a, Attribute>, losses: &mut Losses) -> Opti
     if is_kept {
         return Some(attribute);
     }
-    let is_counted = scalar.is_integer() && !attribute.is_normalized;
+    let is_counted = is_counted(&attribute, scalar);
     let fits = |k: usize| {
         let number = attribute.values.number(k).unwrap_or(0.0);
         let float = number as f32;
@@ -177,13 +177,25 @@ fn representable<'a>(attribute: Cow<'a, Attribute>, losses: &mut Losses) -> Opti
     fits.then(|| as_float32(attribute, losses))
 }
 
+/// Whether the numbers may name or count something: integers, or floats that are all whole and no directions or colours.
+fn is_counted(attribute: &Attribute, scalar: ComponentType) -> bool {
+    if scalar.is_integer() {
+        return !attribute.is_normalized;
+    }
+    let has_fractions =
+        matches!(attribute.semantic, Semantic::Normal | Semantic::TexCoord(_) | Semantic::Color(_));
+    let is_whole = |k: usize| attribute.values.number(k).is_some_and(|number| number.fract() == 0.0);
+    !has_fractions && (0..attribute.values.len()).all(is_whole)
+}
+
 /// Directions of length 1, as glTF wants them, those that are nearly so as they are; what has no direction points along x
 /// if it is a tangent, else along z. Tangents are followed by a sign.
 fn unit_directions<'a>(attribute: &'a Attribute, losses: &mut Losses) -> Cow<'a, Attribute> {
     /// Lengths that rounding explains.
     const NEARLY: f64 = 1e-5;
-    let other = if attribute.name == TANGENT { [1.0, 0.0, 0.0] } else { [0.0, 0.0, 1.0] };
-    let mut num_changed = 0;
+    let (other, other_name) =
+        if attribute.name == TANGENT { ([1.0, 0.0, 0.0], "1 0 0") } else { ([0.0, 0.0, 1.0], "0 0 1") };
+    let (mut num_made_up, mut num_changed) = (0, 0);
     let mut unit = |row: usize| {
         let number = |k: usize| attribute.number(row, k).unwrap_or(0.0);
         let direction = [0, 1, 2].map(number);
@@ -196,17 +208,22 @@ fn unit_directions<'a>(attribute: &'a Attribute, losses: &mut Losses) -> Cow<'a,
             (true, false) => direction.map(|c| c / length),
         };
         let sign = (attribute.num_components > 3).then(|| if number(3) < 0.0 { -1.0 } else { 1.0 });
-        num_changed += usize::from(!is_unit || sign.is_some_and(|sign| sign != number(3)));
+        num_made_up += usize::from(!is_direction);
+        let is_turned = sign.is_some_and(|sign| sign != number(3));
+        num_changed += usize::from(is_direction && (!is_unit || is_turned));
         unit.into_iter().chain(sign)
     };
     let numbers: Vec<f64> = (0..attribute.num_entries()).flat_map(&mut unit).collect();
-    if num_changed > 0 {
-        let subject = format!("{} (to length 1)", attribute.name);
-        let loss = Loss::new(Stage::Writing, LossKind::ValuesConverted, subject);
-        losses.push(loss.count(num_changed).of(attribute.num_entries()));
-    }
+    let mut say = |kind, count: usize, how: &str| {
+        let loss = Loss::new(Stage::Writing, kind, format!("{} ({how})", attribute.name));
+        losses.append(
+            Some(loss.count(count).of(attribute.num_entries())).filter(|_| count > 0).into_iter().collect(),
+        );
+    };
+    say(LossKind::ValuesFilled, num_made_up, other_name);
+    say(LossKind::ValuesConverted, num_changed, "to length 1");
     let is_float = attribute.values.component_type() == Some(ComponentType::F32);
-    let values = if is_float || num_changed > 0 {
+    let values = if is_float || num_made_up + num_changed > 0 {
         Values::F32(numbers.into_iter().map(|c| c as f32).collect())
     } else {
         Values::F64(numbers)
