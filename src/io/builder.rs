@@ -183,11 +183,16 @@ impl ReadReport {
     }
 }
 
-/// A name for a message: nothing in it reaches for the terminal, and it is no longer than a line.
+/// A name for a message: control characters are spelled, and it is no longer than a line.
 #[cfg(any(feature = "gltf", feature = "las"))]
-fn plain(name: &str) -> String {
+pub(super) fn plain(name: &str) -> String {
     const MAX_CHARS: usize = 60;
-    let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-    let cut = if name.chars().nth(MAX_CHARS).is_some() { "…" } else { "" };
-    name.chars().take(MAX_CHARS).map(clean).chain(cut.chars()).collect()
+    let mut plain = String::new();
+    for c in name.chars().take(MAX_CHARS) {
+        if c.is_control() { plain.extend(c.escape_default()) } else { plain.push(c) }
+    }
+    if name.chars().nth(MAX_CHARS).is_some() {
+        plain.push('…');
+    }
+    plain
 }
