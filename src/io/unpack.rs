@@ -156,7 +156,7 @@ struct Unpacker<'a> {
 }
 
 enum Decoder<'a> {
-    Gzip(Members<Counter<'a>>),
+    Gzip(Box<Members<Counter<'a>>>),
     Zstd(zstd::Decoder<'static, BufReader<Counter<'a>>>),
 }
 
@@ -184,7 +184,7 @@ impl Decoder<'_> {
 impl<'a> Unpacker<'a> {
     fn new(file: Counter<'a>, compression: Compression, options: &ReadOptions) -> io::Result<Self> {
         let decoder = match compression {
-            Compression::Gzip => Decoder::Gzip(Members::new(file)),
+            Compression::Gzip => Decoder::Gzip(Box::new(Members::new(file))),
             Compression::Zstd => Decoder::Zstd(zstd::Decoder::new(file)?),
         };
         Ok(Self { decoder, num_unpacked: 0, options: options.clone() })

@@ -257,7 +257,7 @@ impl Faces {
                 let row = |corner: usize| first + corner as u32;
                 self.wedge_rows.extend(fan(num_corners).flatten().map(row));
             } else {
-                if wedge_values.len() > 0 {
+                if !wedge_values.is_empty() {
                     builder.report.ignore("face.texcoord of another length");
                 }
                 self.wedge_rows.resize(3 * builder.triangles.len(), NO_ENTRY);
