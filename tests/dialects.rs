@@ -75,7 +75,10 @@ fn stl_keywords_are_known_in_any_case_and_in_two_words() {
 fn stl_lines_of_other_programs_are_passed_over_between_facets() {
     let coloured = STL.replace("endfacet\n", "endfacet\n  color 0.5 0.5 1\n");
     let file = stl(&coloured).unwrap();
-    assert_eq!((file.mesh, file.report.ignored), (stl(STL).unwrap().mesh, vec!["color".to_owned()]));
+    assert_eq!(
+        (file.mesh, file.report.ignored),
+        (stl(STL).unwrap().mesh, vec!["names of solids".to_owned(), "color".to_owned()])
+    );
     for (from, to, line) in [
         ("vertex 1 1 0", "verte 1 1 0", 12),
         ("endloop", "end of it", 7),
@@ -279,7 +282,8 @@ fn ply_textures_that_a_comment_names_are_kept() {
     let textures = named(&file, "TextureFile");
     assert_eq!(textures.values.names().unwrap(), ["skin one.png", "b.png"]);
     assert_eq!(textures.indices.as_ref().unwrap()[..], [1, 0, NO_ENTRY, NO_ENTRY]);
-    assert_eq!(named(&file, "texnumber").values, Values::I32(vec![1, 0, -1, 2]));
+    assert!(file.attributes.list.iter().all(|attribute| attribute.name != "texnumber"), "the names say it");
+    assert_eq!(file.report.ignored[0], "numbers of textures that are not there");
     let mut written = Vec::new();
     let report =
         io::write_with_attributes_to(&mut written, &file.mesh, &file.attributes, Format::Ply).unwrap();
@@ -288,6 +292,95 @@ fn ply_textures_that_a_comment_names_are_kept() {
     // Without numbers all have the first.
     let text = ply_text("", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").replace("ascii 1.0\n", lines);
     assert_eq!(entries(&ply(text).unwrap(), "TextureFile"), [0; 3]);
+}
+
+/// The names of the textures of three triangles with the numbers 1, 1 and `last`.
+fn textures(names: &[&str], last: i32) -> MeshFile {
+    let comments: String = names.iter().map(|name| format!("comment TextureFile {name}\n")).collect();
+    let text = ply_text("", &format!("0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1\n3 0 2 1 1\n3 0 1 2 {last}\n"));
+    let text = text.replace("element face 1", "element face 3");
+    let text = text.replace("indices\n", "indices\nproperty int texnumber\n");
+    ply(text.replace("ascii 1.0\n", &format!("ascii 1.0\n{comments}"))).unwrap()
+}
+
+fn texture_names(file: &MeshFile) -> Vec<Option<String>> {
+    let textures = named(file, "TextureFile");
+    let name = |t| Some(textures.values.names().unwrap()[textures.entry(t)?].clone());
+    (0..file.mesh.num_triangles()).map(name).collect()
+}
+
+#[test]
+fn ply_numbers_of_textures_follow_their_names() {
+    let written = |file: &MeshFile| {
+        let mut bytes = Vec::new();
+        io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Ply).unwrap();
+        ply(&bytes).unwrap()
+    };
+    let some = |name: &str| Some(name.to_owned());
+    let file = textures(&["a.png", "b.png", "c.png"], 2);
+    assert_eq!(file.report.ignored[0], "textures that no face has");
+    assert_eq!(texture_names(&file), [some("b.png"), some("b.png"), some("c.png")]);
+    assert_eq!(texture_names(&written(&file)), texture_names(&file));
+    let twice = textures(&["a.png", "b.png", "b.png"], 2);
+    assert_eq!(named(&twice, "TextureFile").values.names().unwrap(), ["b.png"]);
+    assert_eq!(texture_names(&written(&twice)), vec![some("b.png"); 3]);
+    let none = textures(&["a.png", "b.png"], -1);
+    assert_eq!(none.report.ignored[0], "textures that no face has");
+    assert_eq!(texture_names(&written(&none)), [some("b.png"), some("b.png"), None]);
+    let wrong = textures(&["a.png"], 7);
+    assert_eq!(wrong.attributes.list.len(), 1, "the numbers stay");
+    assert_eq!(wrong.report.ignored, ["textures that no face has"]);
+}
+
+#[cfg(feature = "gltf")]
+#[test]
+fn ply_textures_of_several_files_are_those_of_each() {
+    let mut scene = io::Scene::from(textures(&["a.png", "b.png"], 0));
+    scene.append(textures(&["c.png", "d.png"], 0).into());
+    let all = scene.merge().unwrap();
+    let mut bytes = Vec::new();
+    io::write_with_attributes_to(&mut bytes, &all.mesh, &all.attributes, Format::Ply).unwrap();
+    let names = texture_names(&ply(&bytes).unwrap());
+    let names: Vec<&str> = names.iter().map(|name| name.as_deref().unwrap()).collect();
+    assert_eq!(names, ["b.png", "b.png", "a.png", "d.png", "d.png", "c.png"]);
+}
+
+#[test]
+fn ply_text_attributes_that_no_float32_has_are_float64() {
+    let properties = "property float h\n";
+    for (word, is_wide) in
+        [("1e300", true), ("16777217", true), ("5500000.001", true), ("0.1", false), ("nan", false)]
+    {
+        let text = ply_text(properties, &format!("0 0 0 0.25\n1 0 0 {word}\n0 1 0 inf\n3 0 1 2\n"));
+        let values = named(&ply(text).unwrap(), "h").values.clone();
+        match values {
+            Values::F64(values) => {
+                assert_eq!(values[..], [0.25, word.parse().unwrap(), f64::INFINITY], "{word}");
+                assert!(is_wide, "{word}");
+            }
+            Values::F32(values) => assert!(!is_wide && values[0] == 0.25, "{word}"),
+            other => panic!("{word}: {other:?}"),
+        }
+    }
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n\
+        0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 0.5 0 0 1\n3 0 2 1 6 0 0 16777217 0 0 1\n";
+    let wedge = named(&ply(text).unwrap(), "texcoord").values.clone();
+    let Values::F64(wedge) = wedge else { panic!("{wedge:?}") };
+    assert_eq!((wedge.len(), wedge[2], wedge[8]), (12, 0.5, 16_777_217.0));
+}
+
+#[test]
+fn stl_names_and_attribute_bytes_are_named() {
+    let text = "solid part 1\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n\
+        endfacet\nendsolid part 1\n";
+    assert_eq!(stl(text).unwrap().report.ignored, ["names of solids"]);
+    assert_eq!(stl(text.replace(" part 1", "")).unwrap().report.ignored, [""; 0]);
+    let mut bytes = bytes_of(&tetrahedron(), Format::Stl);
+    let last = bytes.len() - 1;
+    assert_eq!(stl(&bytes).unwrap().report.ignored, [""; 0]);
+    bytes[last] = 0x80;
+    assert_eq!(stl(&bytes).unwrap().report.ignored, ["attribute bytes of triangles"]);
 }
 
 #[test]
@@ -398,8 +491,15 @@ fn obj_vertices_of_seven_numbers_have_weight_and_colour() {
     let file = obj("v 0 0 0 1 0.5 0.25 0\nv 1 0 0 1 1 1 1\nv 0 1 0 1 0 0 0\nf 1 2 3\n").unwrap();
     assert_eq!(named(&file, "v.rgb").values, Values::F64(vec![0.5, 0.25, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]));
     assert!(file.report.ignored.is_empty());
-    let file = obj("v 0 0 0 2 0.5 0.25 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    assert_eq!(file.report.ignored, ["weights of vertices"]);
+    // A weight is 1 and an alpha as well: what is not 1 everywhere is no weight.
+    for (first, second) in [("0.5 0.25 0 1", "0.5 0.75 1 1"), ("0.5 0.25 0 0.5", "1 1 1 0")] {
+        let file = obj(format!("v 0 0 0 {first}\nv 1 0 0 {second}\nv 0 1 0 0.1 0.2 0.3\nf 1 2 3\n")).unwrap();
+        let Values::F64(values) = &named(&file, "v.rgba").values else { panic!() };
+        let row = |text: &str| text.split(' ').map(|word| word.parse().unwrap()).collect::<Vec<f64>>();
+        assert_eq!((&values[..4], &values[4..8]), (&row(first)[..], &row(second)[..]));
+        assert_eq!(values[8..], [0.1, 0.2, 0.3, 1.0]);
+        assert!(file.report.ignored.is_empty());
+    }
 }
 
 #[test]

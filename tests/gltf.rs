@@ -206,7 +206,7 @@ fn primitives_share_vertices_and_have_materials() {
     let id = named(&file, "_ID");
     assert_eq!((id.semantic, id.domain), (Semantic::Generic, Domain::Corner));
     assert_eq!(at_corners(&file, "_ID")[8..], [None, Some(1.0), Some(2.0), Some(3.0)]);
-    assert!(file.report.ignored.is_empty());
+    assert_eq!(file.report.ignored, ["materials that nothing has"]);
 
     let mut bytes = Vec::new();
     let losses = io::write_with_attributes_to(&mut bytes, &file.mesh, &file.attributes, Format::Glb).unwrap();
@@ -420,7 +420,7 @@ fn materials_and_their_images_are_carried() {
     }));
     let file = read(&document).unwrap();
     let missing = "image `wood.jpg` is another file, and there is no folder to look for it";
-    assert_eq!(file.report.ignored, [missing]);
+    assert_eq!(file.report.ignored, ["KHR_lights_punctual", missing]);
     assert_eq!(named(&file, "material").values.names().unwrap(), ["paint#2", "paint"]);
     let carried = file.attributes.gltf_materials.as_ref().unwrap();
     assert_eq!(carried.images, [[1.5f32.to_le_bytes(), 2.5f32.to_le_bytes()].concat()]);
@@ -609,6 +609,72 @@ fn nodes_without_names_have_those_of_ancestors() {
 }
 
 #[test]
+fn names_of_ancestors_are_not_copied_without_end() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    const NUM: usize = 3000;
+    let mut nodes = vec![json!({ "name": "n".repeat(1024), "children": (1..=NUM).collect::<Vec<_>>() })];
+    nodes.extend((0..NUM).map(|_| json!({ "mesh": 0 })));
+    let rest = json!({
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": position } }] }],
+        "nodes": nodes, "scenes": [{ "nodes": [0] }],
+    });
+    let bytes = model.document(rest).to_string();
+    let scene = io::ReadOptions::default().read_scene_from(bytes.as_bytes(), Format::Gltf).unwrap();
+    let copied: usize = scene.instances.iter().map(|instance| instance.name.len()).sum();
+    assert!(copied > 1 << 19 && copied <= 1 << 20, "{copied}");
+    assert_eq!(scene.report.ignored, ["names that too many nodes share"]);
+}
+
+#[test]
+fn what_is_not_kept_of_a_document_is_named() {
+    let mut model = Model::default();
+    let position = model.floats("VEC3", 3, &SQUARE[..9]);
+    let value = model.floats("SCALAR", 1, &[1.0, 2.0, 3.0]);
+    let primitive =
+        json!({ "attributes": { "POSITION": position, "_a\tb": value }, "extras": 1, "material": 1 });
+    let document = model.document(json!({
+        "asset": { "version": "2.0", "copyright": "me", "extras": { "crs.wkt": "x", "other": 1 } },
+        "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_unlit", "EXT_structural_metadata"],
+        "materials": [{ "name": "A" }, { "name": "A" }],
+        "meshes": [{ "primitives": [primitive], "name": "shape", "extras": {} }],
+        "nodes": [
+            { "name": "car", "mesh": 0, "extras": {}, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2] },
+            { "name": "light" },
+        ],
+        "scenes": [{ "nodes": [0, 1], "name": "all", "extras": {} }],
+        "extras": {},
+    }));
+    let report = read(&document).unwrap().report;
+    let mut ignored = report.ignored.clone();
+    ignored.sort_unstable();
+    let expected = [
+        "EXT_structural_metadata",
+        "KHR_lights_punctual",
+        "bottom rows of matrices",
+        "copyright of the asset",
+        "extras of meshes",
+        "extras of nodes",
+        "extras of primitives",
+        "extras of scenes",
+        "extras of the asset",
+        "extras of the document",
+        "materials that nothing has",
+        "names of meshes",
+        "names of scenes",
+        "nodes without meshes",
+    ];
+    assert_eq!(ignored, expected);
+    assert_eq!(report.renamed, ["_a\\tb (_a\u{fffd}b)", "A (A#1)"]);
+    let plain = model.read(one_mesh(json!([{ "attributes": { "POSITION": position } }]))).unwrap();
+    assert!(plain.report.losses().is_empty(), "{:?}", plain.report);
+    let long = json!([{ "mesh": 0, "name": "é".repeat(600) }]);
+    let mut document = model.document(one_mesh(json!([{ "attributes": { "POSITION": position } }])));
+    document["nodes"] = long;
+    assert_eq!(read(&document).unwrap().report.ignored, ["names beyond their first 1024 bytes"]);
+}
+
+#[test]
 fn scenes_that_are_no_trees_are_refused() {
     let model = Model::default();
     let read = |nodes: Value, roots: Value| {
@@ -784,6 +850,11 @@ fn documents_of_version_1_are_called_that() {
     let text = r#"{ "accessors": {}, "bufferViews": { "a": {} }, "meshes": { "m": {} }, "scenes": {} }"#;
     let refused = refusal(io::read_bytes(text.as_bytes(), Format::Gltf));
     assert_eq!(refused, "line 1: glTF version `1.0`, and only 2.0 is read");
+    for version in ["\"1.1\"", "1.0"] {
+        let text = format!(r#"{{ "asset": {{ "version": {version} }}, "meshes": {{ "m": {{}} }} }}"#);
+        let refused = refusal(io::read_bytes(text.as_bytes(), Format::Gltf));
+        assert_eq!(refused, "line 1: glTF version `1.0`, and only 2.0 is read");
+    }
     let refused = refusal(io::read_bytes(&glb(1, b"{}", b""), Format::Glb));
     assert_eq!(refused, "byte 4: glTF version `1`, and only 2.0 is read");
 }

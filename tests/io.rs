@@ -564,8 +564,15 @@ fn damaged_gzip_is_refused() {
         parts = packer.finish().unwrap();
     }
     let path = directory.path().join("a.obj.gz");
-    fs::write(&path, parts).unwrap();
+    fs::write(&path, &parts).unwrap();
     assert_eq!(io::read(&path).unwrap().mesh.triangles(), [[0, 1, 2]]);
+    // Zeros fill blocks behind the last of them.
+    let padded = [&parts[..], &[0; 100_000]].concat();
+    fs::write(&path, &padded).unwrap();
+    assert_eq!(io::read(&path).unwrap().mesh.triangles(), [[0, 1, 2]]);
+    fs::write(&path, [&padded[..], b"more"].concat()).unwrap();
+    let error = io::read(&path).expect_err("no member");
+    assert!(matches!(error, ReadError::Gzip(_)), "{error}");
 }
 
 #[test]

@@ -198,13 +198,13 @@ fn extra_bytes_and_near_infrared_are_kept() {
     assert_eq!(named(&file, "width").values, Values::F64(vec![0.0, -0.5, -0.75, -1.0, -1.25]));
     let labels = [0, 2, 3, 4, 5].map(|k| f64::from(k) * 2f64.powi(33));
     assert_eq!(named(&file, "label").values, Values::F64(labels.to_vec()));
-    assert_eq!(file.report.ignored, ["returns, angles, times and sources of points"]);
+    assert_eq!(file.report.ignored, [OF_POINTS]);
 
     let pairs: fn(u8) -> Vec<u8> = |k| vec![k, 2 * k];
     let bytes = with_extra_bytes(&plain, &[(11, "pairs", pairs, None), (1, "odd", |k| vec![k], None)]);
     let file = read(&bytes).unwrap();
     assert_eq!(named(&file, "odd").values, Values::U8(vec![0, 2, 3, 4, 5]));
-    assert_eq!(file.report.ignored, ["returns, angles, times and sources of points", "extra bytes"]);
+    assert_eq!(file.report.ignored, [OF_POINTS, "extra bytes pairs"]);
 }
 
 /// The file with records of the user `LASF_Projection` in front of the points; those from `behind` on, behind them.
@@ -568,4 +568,65 @@ fn a_real_scan_is_the_surface_that_others_make_of_it() {
     options.max_points = Some(20_000);
     let thinned = io::read_terrain(&path, &options).unwrap();
     assert!((15_000..=20_000).contains(&thinned.mesh.num_vertices()), "{}", thinned.mesh.num_vertices());
+}
+
+/// A variable length record of the file that `las` makes.
+fn with_record(mut bytes: Vec<u8>, user: &[u8], id: u16, declared: u16, data: &[u8]) -> Vec<u8> {
+    let mut record = vec![0; 54];
+    record[2..2 + user.len()].copy_from_slice(user);
+    record[18..20].copy_from_slice(&id.to_le_bytes());
+    record[20..22].copy_from_slice(&declared.to_le_bytes());
+    record.extend(data);
+    let start = u32::from_le_bytes(bytes[96..100].try_into().unwrap());
+    bytes[96..100].copy_from_slice(&(start + record.len() as u32).to_le_bytes());
+    bytes.splice(start as usize..start as usize, record);
+    bytes
+}
+
+const OF_POINTS: &str = "returns, angles, times, sources, flags and user data of points";
+
+#[test]
+fn what_is_not_kept_of_a_cloud_is_named() {
+    let ignored = |bytes: &[u8]| read(bytes).unwrap().report.ignored;
+    let plain = las(0, &SQUARE);
+    assert_eq!(ignored(&plain), [OF_POINTS]);
+    let other = with_record(plain.clone(), b"me", 1, 2, b"ab");
+    assert_eq!(ignored(&other), [OF_POINTS, "other variable length records"]);
+    let known = with_record(plain.clone(), b"LASF_Projection", 2112, 2, b"ab");
+    assert_eq!(ignored(&known), [OF_POINTS]);
+    let cut = with_record(plain, b"LASF_Projection", 2112, 60_000, b"ab");
+    assert_eq!(ignored(&cut), ["record 2112 of LASF_Projection, in which the file ends", OF_POINTS]);
+}
+
+#[test]
+fn fields_that_are_renamed_or_left_out_are_named() {
+    let mut description = vec![0; 192];
+    description[2] = 1;
+    description[4..16].copy_from_slice(b"height above");
+    let mut bytes = las(0, &SQUARE);
+    let start = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+    for point in (0..SQUARE.len()).rev() {
+        let at = start + 20 * point + 20;
+        bytes.splice(at..at, [7, 8]);
+    }
+    bytes[105..107].copy_from_slice(&22u16.to_le_bytes());
+    let file = read(&with_record(bytes.clone(), b"LASF_Spec", 4, 192, &description)).unwrap();
+    assert_eq!(file.report.renamed, ["height above (height_above)"]);
+    assert_eq!(file.report.ignored[1..], ["extra bytes that nothing describes"]);
+    // Two bytes of which only the name is known.
+    description[2..4].copy_from_slice(&[0, 2]);
+    let file = read(&with_record(bytes, b"LASF_Spec", 4, 192, &description)).unwrap();
+    assert_eq!(file.report.ignored[1..], ["extra bytes height above"]);
+}
+
+#[test]
+fn colours_of_8_bits_are_counted() {
+    let mut bytes = las(2, &SQUARE);
+    assert_eq!(read(&bytes).unwrap().report.colours_of_8_bits, 0);
+    for point in 0..SQUARE.len() {
+        let at = record(&bytes, point) + 20;
+        bytes[at..at + 6].copy_from_slice([200u16, 0, 255].map(u16::to_le_bytes).as_flattened());
+    }
+    let file = read(&bytes).unwrap();
+    assert_eq!(file.report.colours_of_8_bits, file.mesh.num_vertices());
 }

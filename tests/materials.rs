@@ -194,3 +194,38 @@ fn materials_of_several_files_keep_apart() {
     assert_eq!(json["images"][1]["bufferView"], 1);
     assert_eq!(packed.attributes.material_libraries[..], ["a.mtl"]);
 }
+
+#[test]
+fn statements_of_libraries_that_are_not_kept_are_named() {
+    let library = "newmtl m\n# a comment\nKd xyz\nKa 1 1 1\nKs 0.5 0.5 0.5\nNi 1.45\nTf 1 1 1\nillum 2\nodd\nKa 0 0 0\n\n\
+        newmtl unused\nsharpness 60\n";
+    let file = read(&folder("a.mtl", &["m"], &[("a.mtl", library.as_bytes())]));
+    let mut ignored: Vec<&str> =
+        file.report.ignored.iter().map(|name| name.trim_end_matches(" of materials")).collect();
+    ignored.sort_unstable();
+    assert_eq!(ignored, ["illum", "ka", "ks", "ni", "odd", "senseless kd", "tf"]);
+    for colour in ["spectral file.rfl 1", "nan nan nan", "1 1"] {
+        let library = format!("newmtl m\nKd {colour}\n");
+        let file = read(&folder("a.mtl", &["m"], &[("a.mtl", library.as_bytes())]));
+        assert_eq!(file.report.ignored, ["senseless kd of materials"], "{colour}");
+    }
+    let file = read(&folder("a.mtl", &["m"], &[("a.mtl", b"newmtl other\nKd 1 0 0\n")]));
+    assert_eq!(file.report.ignored, ["materials of `a.mtl`, none of which a face has"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_out_of_the_folder_are_not_followed() {
+    let elsewhere = tempfile::tempdir().unwrap();
+    fs::write(elsewhere.path().join("b.mtl"), "newmtl m\nKd 1 0 0\n").unwrap();
+    let folder = folder("a.mtl", &["m"], &[]);
+    let link = folder.path().join("a.mtl");
+    std::os::unix::fs::symlink(elsewhere.path().join("b.mtl"), &link).unwrap();
+    let file = read(&folder);
+    assert_eq!(file.report.ignored, ["materials of `a.mtl` is a link out of the folder of the model"]);
+    // One that stays inside is a name like any other.
+    fs::write(folder.path().join("b.mtl"), "newmtl m\nKd 1 0 0\n").unwrap();
+    fs::remove_file(&link).unwrap();
+    std::os::unix::fs::symlink("b.mtl", &link).unwrap();
+    assert!(read(&folder).attributes.gltf_materials.is_some());
+}

@@ -4,7 +4,7 @@ use super::{MAX_FILE_BYTES, text::quoted};
 use std::{
     fs::File,
     io::Read,
-    path::{Component, Path},
+    path::{Component, Path, PathBuf},
 };
 
 /// Bytes of one image, and of all images of a model.
@@ -75,7 +75,11 @@ impl<'a> Folder<'a> {
         if name.contains(':') || !path.components().all(is_below) {
             return Err(format!("{quoted} is not a file in the folder of the model"));
         }
-        let bytes = read_start(&folder.join(path), most.min(self.num_left));
+        let found = inside(folder, path).map_err(|error| format!("{quoted}: {error}"))?;
+        let Some(found) = found else {
+            return Err(format!("{quoted} is a link out of the folder of the model"));
+        };
+        let bytes = read_start(&found, most.min(self.num_left));
         let bytes = bytes.map_err(|error| format!("{quoted}: {error}"))?;
         self.num_left -= bytes.len() as u64;
         Ok(bytes)
@@ -102,6 +106,13 @@ fn media_type(bytes: &[u8]) -> Option<&'static str> {
         [b'D', b'D', b'S', b' ', ..] => Some("image/vnd-ms.dds"),
         _ => None,
     }
+}
+
+/// Where a file is, links followed; `None` if they lead out of its folder.
+fn inside(folder: &Path, path: &Path) -> std::io::Result<Option<PathBuf>> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let found = folder.join(path).canonicalize()?;
+    Ok(found.starts_with(folder.canonicalize()?).then_some(found))
 }
 
 /// What waits for somebody, such as a pipe, is not read.

@@ -154,4 +154,45 @@ impl ReadReport {
             self.ignored.push(name.to_owned());
         }
     }
+
+    /// Notes that what the file calls `from` is `to` in the mesh.
+    #[cfg(any(feature = "gltf", feature = "las"))]
+    pub(super) fn rename(&mut self, from: &str, to: &str) {
+        self.note_renamed(format!("{} ({})", plain(from), plain(to)));
+    }
+
+    #[cfg(any(feature = "gltf", feature = "las"))]
+    fn note_renamed(&mut self, entry: String) {
+        if self.renamed.len() < MAX_IGNORED_NAMES && !self.renamed.contains(&entry) {
+            self.renamed.push(entry);
+        }
+    }
+
+    /// Adds the counts and names of another report.
+    #[cfg(feature = "gltf")]
+    pub(super) fn add(&mut self, other: &Self) {
+        self.polygons_triangulated += other.polygons_triangulated;
+        self.polygons_overlapping += other.polygons_overlapping;
+        self.faces_skipped += other.faces_skipped;
+        self.corners_welded += other.corners_welded;
+        self.points_left_out += other.points_left_out;
+        self.points_withheld += other.points_withheld;
+        self.colours_of_8_bits += other.colours_of_8_bits;
+        other.renamed.iter().for_each(|entry| self.note_renamed(entry.clone()));
+        other.ignored.iter().for_each(|name| self.ignore(name));
+    }
+}
+
+/// A name for a message: control characters are spelled, and it is no longer than a line.
+#[cfg(any(feature = "gltf", feature = "las"))]
+pub(super) fn plain(name: &str) -> String {
+    const MAX_CHARS: usize = 60;
+    let mut plain = String::new();
+    for c in name.chars().take(MAX_CHARS) {
+        if c.is_control() { plain.extend(c.escape_default()) } else { plain.push(c) }
+    }
+    if name.chars().nth(MAX_CHARS).is_some() {
+        plain.push('…');
+    }
+    plain
 }

@@ -32,6 +32,10 @@ pub struct ReadReport {
     pub points_left_out: usize,
     /// LAS only: points flagged as withheld, which counts as deleted. They are left out.
     pub points_withheld: usize,
+    /// LAS only: points whose colours are of 8 bits in fields of 16, and are kept as 8 bits.
+    pub colours_of_8_bits: usize,
+    /// Names that are others in the mesh, each once, as `height above (height_above)`.
+    pub renamed: Vec<String>,
     /// Names of what was in the file and is neither in the mesh nor in the attributes, each once, in order of
     /// appearance: OBJ statements (`l`), PLY properties that are lists (`vertex.bones`) and elements (`edge`), or a few
     /// words where it has no name (`2 bytes after the last triangle`).

@@ -30,6 +30,7 @@ mod foreign;
 mod format;
 #[cfg(feature = "gltf")]
 mod gltf;
+mod gzip;
 #[cfg(feature = "las")]
 mod las;
 #[cfg(feature = "gltf")]

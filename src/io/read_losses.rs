@@ -18,6 +18,8 @@ impl ReadReport {
         count(LossKind::Dropped, "points flagged as withheld", self.points_withheld);
         count(LossKind::Dropped, "points above others, or not wanted", self.points_left_out);
         count(LossKind::VerticesJoined, "", self.corners_welded);
+        count(LossKind::ValuesConverted, "colours of 8 bits in fields of 16", self.colours_of_8_bits);
+        self.renamed.iter().for_each(|name| losses.push(loss(LossKind::NamesChanged, name)));
         self.ignored.iter().for_each(|name| losses.push(loss(LossKind::Dropped, name)));
         losses
     }
@@ -41,11 +43,15 @@ mod tests {
             corners_welded: 3,
             points_left_out: 4,
             points_withheld: 5,
+            colours_of_8_bits: 6,
+            renamed: vec!["a b (a_b)".into()],
             ignored: vec!["l".into(), "p".into()],
         };
-        assert_eq!(report.losses().len(), 8);
+        assert_eq!(report.losses().len(), 10);
         let sentence = report.losses().to_string();
         assert!(sentence.contains("left out: faces of fewer than three corners (2)"), "{sentence}");
+        assert!(sentence.contains("a b (a_b)"), "{sentence}");
+        assert!(sentence.contains("colours of 8 bits in fields of 16"), "{sentence}");
         assert!(sentence.contains("left out: p"), "{sentence}");
         assert!(sentence.contains("1 polygon cut into triangles that overlap"), "{sentence}");
     }

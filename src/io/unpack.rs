@@ -4,8 +4,8 @@ use super::counter::Counter;
 use super::error::ReadError;
 use super::foreign;
 use super::format::{Compression, Format, format_and_compression};
+use super::gzip::Members;
 use super::source::Source;
-use flate2::read::MultiGzDecoder;
 use std::{
     fs::File,
     io::{self, BufReader, Read},
@@ -156,7 +156,7 @@ struct Unpacker<'a> {
 }
 
 enum Decoder<'a> {
-    Gzip(MultiGzDecoder<Counter<'a>>),
+    Gzip(Box<Members<Counter<'a>>>),
     Zstd(zstd::Decoder<'static, BufReader<Counter<'a>>>),
 }
 
@@ -164,7 +164,7 @@ impl Decoder<'_> {
     /// Bytes of the file that were read.
     fn num_packed(&self) -> u64 {
         match self {
-            Self::Gzip(decoder) => decoder.get_ref().num_bytes,
+            Self::Gzip(members) => members.get_ref().map_or(0, |file| file.num_bytes),
             Self::Zstd(decoder) => decoder.get_ref().get_ref().num_bytes,
         }
     }
@@ -184,7 +184,7 @@ impl Decoder<'_> {
 impl<'a> Unpacker<'a> {
     fn new(file: Counter<'a>, compression: Compression, options: &ReadOptions) -> io::Result<Self> {
         let decoder = match compression {
-            Compression::Gzip => Decoder::Gzip(MultiGzDecoder::new(file)),
+            Compression::Gzip => Decoder::Gzip(Box::new(Members::new(file))),
             Compression::Zstd => Decoder::Zstd(zstd::Decoder::new(file)?),
         };
         Ok(Self { decoder, num_unpacked: 0, options: options.clone() })

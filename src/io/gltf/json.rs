@@ -29,6 +29,7 @@ pub(super) struct Document {
     pub nodes: Vec<Node>,
     #[serde(deserialize_with = "or_default")]
     pub scenes: Vec<Scene>,
+    pub extras: Option<IgnoredAny>,
     pub scene: Option<usize>,
     #[serde(deserialize_with = "or_default")]
     pub materials: Vec<Map<String, Value>>,
@@ -52,6 +53,7 @@ pub(super) struct Asset {
     #[serde(deserialize_with = "or_default")]
     pub version: String,
     pub min_version: Option<String>,
+    pub copyright: Option<IgnoredAny>,
     #[serde(deserialize_with = "or_default")]
     pub extras: Value,
 }
@@ -109,6 +111,7 @@ pub(super) struct SparsePart {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Mesh {
+    pub extras: Option<IgnoredAny>,
     #[serde(default, deserialize_with = "or_default")]
     pub name: String,
     pub primitives: Vec<Primitive>,
@@ -120,6 +123,7 @@ pub(super) struct Primitive {
     pub attributes: BTreeMap<String, usize>,
     pub indices: Option<usize>,
     pub material: Option<usize>,
+    pub extras: Option<IgnoredAny>,
     pub mode: Option<u32>,
     #[serde(default, deserialize_with = "or_default")]
     pub targets: Vec<IgnoredAny>,
@@ -134,6 +138,7 @@ pub(super) struct Node {
     pub name: String,
     #[serde(deserialize_with = "or_default")]
     pub children: Vec<usize>,
+    pub extras: Option<IgnoredAny>,
     pub mesh: Option<usize>,
     /// Column by column.
     pub matrix: Option<Box<[f64; 16]>>,
@@ -161,6 +166,9 @@ pub(super) struct Instancing {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Scene {
+    #[serde(deserialize_with = "or_default")]
+    pub name: String,
+    pub extras: Option<IgnoredAny>,
     #[serde(deserialize_with = "or_default")]
     pub nodes: Vec<usize>,
 }

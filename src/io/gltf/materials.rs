@@ -20,13 +20,19 @@ const LISTS: [&str; 4] = ["materials", "textures", "images", "samplers"];
 const EXTENSIONS: [&str; 2] = ["extensionsUsed", "extensionsRequired"];
 
 /// The name of each material. Two that share one get numbers.
-pub(super) fn names(document: &Document) -> Vec<String> {
+pub(super) fn names(document: &Document, report: &mut ReadReport) -> Vec<String> {
     let mut known = HashSet::new();
     let mut unique = |(index, material): (usize, &Map<String, Value>)| {
         let mut name = material.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
-        shorten(&mut name);
+        if shorten(&mut name) {
+            report.ignore("names beyond their first 1024 bytes");
+        }
         if !known.insert(name.clone()) {
-            name = format!("{name}#{index}");
+            let other = format!("{name}#{index}");
+            if !name.is_empty() {
+                report.rename(&name, &other);
+            }
+            name = other;
             known.insert(name.clone());
         }
         name
@@ -40,18 +46,22 @@ pub(super) fn names(document: &Document) -> Vec<String> {
 /// If there are more images than the buffers have bytes for.
 pub(super) fn read(
     document: &Document,
+    names: &[String],
     store: &mut Store,
     folder: &mut Folder,
     report: &mut ReadReport,
 ) -> Result<Option<GltfMaterials>, ReadError> {
     let is_bare = |material: &Map<String, Value>| material.keys().all(|key| key == "name");
     if document.materials.iter().all(is_bare) {
+        if has_unused(document) {
+            report.ignore("materials that nothing has");
+        }
         return Ok(None);
     }
     let mut materials = document.materials.clone();
-    for (material, name) in materials.iter_mut().zip(names(document)) {
+    for (material, name) in materials.iter_mut().zip(names) {
         if !name.is_empty() {
-            material.insert("name".to_owned(), name.into());
+            material.insert("name".to_owned(), name.as_str().into());
         }
     }
     let mut embedded = Vec::new();
@@ -93,6 +103,17 @@ pub(super) fn read(
         "extensionsRequired": of_materials(&document.extensions_required),
     });
     Ok(Some(GltfMaterials { json: json.to_string(), images: embedded }))
+}
+
+/// Whether there is a material that no primitive has.
+fn has_unused(document: &Document) -> bool {
+    let mut is_used = vec![false; document.materials.len()];
+    for primitive in document.meshes.iter().flat_map(|mesh| &mesh.primitives) {
+        if let Some(is_used) = primitive.material.and_then(|material| is_used.get_mut(material)) {
+            *is_used = true;
+        }
+    }
+    is_used.contains(&false)
 }
 
 /// Takes the file that an image names into the document. `index_of`: of those that are in `embedded` already.

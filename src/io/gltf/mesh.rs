@@ -145,7 +145,11 @@ impl<'a> Gathered<'a> {
         }
         for (name, &accessor) in attributes.iter().filter(|(name, _)| *name != "POSITION") {
             // Names end up in messages: nothing in them may reach for the terminal.
+            let own = name;
             let name = &name.replace(char::is_control, "\u{fffd}");
+            if name != own {
+                self.report.rename(own, name);
+            }
             let place = Place::Part("accessor", accessor);
             let array = match store.read(accessor) {
                 Err(ReadError::Unsupported { .. }) => {

@@ -6,6 +6,7 @@
 
 mod accessor;
 mod gpu_instances;
+mod ignored;
 mod joined_materials;
 mod json;
 mod materials;
@@ -41,29 +42,24 @@ const KNOWN_EXTENSIONS: [&str; 9] = [
 
 /// Reads a document with all its meshes. Buffers and images in other files are looked for in `folder`.
 pub(super) fn read(bytes: &[u8], folder: &mut Folder) -> Result<Scene, ReadError> {
-    let (document, binary) = source::parse(bytes)?;
+    let source::Parsed { document, binary, has_cut_names } = source::parse(bytes)?;
     check_extensions(&document)?;
     let buffers = source::load_buffers(&document, binary, folder)?;
     let mut store = Store::new(&document, buffers, bytes.len());
     let mut scene = Scene::default();
     scene.instances = nodes::instances(&document, &mut store, &mut scene.report)?;
-    let names = materials::names(&document);
+    ignored::note(&document, &scene.instances, &mut scene.report);
+    if has_cut_names {
+        scene.report.ignore("names beyond their first 1024 bytes");
+    }
+    let names = materials::names(&document, &mut scene.report);
     for index in 0..document.meshes.len() {
         scene.meshes.push(mesh::read_mesh(&document, index, &names, &mut store)?);
     }
     let metadata: Arc<[(String, String)]> = metadata(&document.asset.extras).into();
     scene.meshes.iter_mut().for_each(|file| file.attributes.metadata = metadata.clone());
-    scene.gltf_materials = materials::read(&document, &mut store, folder, &mut scene.report)?;
+    scene.gltf_materials = materials::read(&document, &names, &mut store, folder, &mut scene.report)?;
     scene.num_bytes = store.num_bytes();
-    for (what, is_there) in [
-        ("animations", !document.animations.is_empty()),
-        ("skins", !document.skins.is_empty()),
-        ("cameras", !document.cameras.is_empty()),
-    ] {
-        if is_there {
-            scene.report.ignore(what);
-        }
-    }
     Ok(scene)
 }
 

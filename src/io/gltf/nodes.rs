@@ -33,6 +33,7 @@ pub(super) fn instances(
         report.ignore("scenes");
     }
     let mut instances = Vec::new();
+    let mut copies = Copies::of(store.num_bytes());
     let mut is_visited = vec![false; document.nodes.len()];
     let visit = |&node: &usize| Visit { node, parent: IDENTITY, named: None };
     let mut stack: Vec<Visit> = scene.nodes.iter().rev().map(visit).collect();
@@ -53,14 +54,19 @@ pub(super) fn instances(
             let name = named.map_or("", |ancestor| ancestor.name);
             let is_named = named.is_some_and(|ancestor| ancestor.is_alone) || of_mesh.is_empty();
             let name = if is_named { name } else { of_mesh };
-            let instance = |transform| Instance { mesh, name: name.to_owned(), transform };
+            let is_own = !node.name.is_empty() && node.name == name;
+            let mut instance = |transform, is_copy: bool| {
+                let name = if is_copy { copies.copy(name) } else { name };
+                Instance { mesh, name: name.to_owned(), transform }
+            };
             match &node.extensions.instancing {
-                None => instances.push(instance(transform)),
+                None => instances.push(instance(transform, !is_own)),
                 Some(instancing) => {
-                    for own in gpu_instances::transforms(instancing, name, place, store, report)? {
+                    let transforms = gpu_instances::transforms(instancing, name, place, store, report)?;
+                    for own in transforms {
                         let transform = product(&transform, &own);
                         check_finite(&transform, place)?;
-                        instances.push(instance(transform));
+                        instances.push(instance(transform, true));
                     }
                 }
             }
@@ -69,7 +75,41 @@ pub(super) fn instances(
         let named = named.map(|ancestor| Ancestor { is_alone: ancestor.is_alone && is_only, ..ancestor });
         stack.extend(node.children.iter().rev().map(|&node| Visit { node, parent: transform, named }));
     }
+    if copies.is_spent {
+        report.ignore("names that too many nodes share");
+    }
     Ok(instances)
+}
+
+/// Names that instances have of others than their node, and what they may take: many nodes may share a long one.
+struct Copies {
+    num_left: usize,
+    is_spent: bool,
+}
+
+impl Copies {
+    /// Bytes of such names for each byte of the file, and in any file.
+    const PER_BYTE: usize = 4;
+    const LEAST: usize = 1 << 20;
+
+    /// For a file of this many bytes.
+    fn of(num_bytes: usize) -> Self {
+        Self { num_left: num_bytes.saturating_mul(Self::PER_BYTE).max(Self::LEAST), is_spent: false }
+    }
+
+    /// The name, or none if that is too much.
+    fn copy<'a>(&mut self, name: &'a str) -> &'a str {
+        match self.num_left.checked_sub(name.len()) {
+            Some(num_left) => {
+                self.num_left = num_left;
+                name
+            }
+            None => {
+                self.is_spent = true;
+                ""
+            }
+        }
+    }
 }
 
 /// A node that is yet to be visited.

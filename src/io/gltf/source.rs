@@ -4,6 +4,7 @@ use super::json::Document;
 use crate::io::{Place, ReadError, beside::Folder, text::quoted};
 use base64::Engine;
 use serde::{Deserialize, de::IgnoredAny};
+use serde_json::Value;
 use std::{borrow::Cow, collections::BTreeMap};
 
 /// Longer names are cut: many nodes may share one.
@@ -13,10 +14,20 @@ const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: u32 = 0x4e4f_534a;
 const BINARY_CHUNK: u32 = 0x004e_4942;
 
+/// What is in a file.
+pub(super) struct Parsed<'a> {
+    pub document: Document,
+    /// The bytes that come with it.
+    pub binary: Option<&'a [u8]>,
+    /// Whether names of meshes or nodes were cut.
+    pub has_cut_names: bool,
+}
+
 /// Takes apart a GLB container, or a bare text: the document and the bytes that come with it.
-pub(super) fn parse(bytes: &[u8]) -> Result<(Document, Option<&[u8]>), ReadError> {
+pub(super) fn parse(bytes: &[u8]) -> Result<Parsed<'_>, ReadError> {
     if !bytes.starts_with(MAGIC) {
-        return Ok((parse_text(bytes, None)?, None));
+        let (document, has_cut_names) = parse_text(bytes, None)?;
+        return Ok(Parsed { document, binary: None, has_cut_names });
     }
     let word = |at: usize| {
         let raw = bytes.get(at..at + 4).and_then(|raw| raw.try_into().ok());
@@ -49,15 +60,16 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Document, Option<&[u8]>), ReadError
     // Blanks should pad it; some programs take zeros.
     let num_zeros = text.iter().rev().take_while(|&&byte| byte == 0).count();
     let text = &text[..text.len() - num_zeros];
-    Ok((parse_text(text, Some(start))?, chunks[1].map(|(_, binary)| binary)))
+    let (document, has_cut_names) = parse_text(text, Some(start))?;
+    Ok(Parsed { document, binary: chunks[1].map(|(_, binary)| binary), has_cut_names })
 }
 
 fn cut(length: usize) -> ReadError {
     ReadError::syntax(Place::Byte(length), "the file ends before its JSON chunk")
 }
 
-/// Parses JSON that begins at a byte of a binary file, or is the file.
-fn parse_text(text: &[u8], start: Option<usize>) -> Result<Document, ReadError> {
+/// Parses JSON that begins at a byte of a binary file, or is the file. Also says whether names were cut.
+fn parse_text(text: &[u8], start: Option<usize>) -> Result<(Document, bool), ReadError> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut document: Document = serde_json::from_slice(text).map_err(|error| {
         if is_version_1(text) {
@@ -66,6 +78,9 @@ fn parse_text(text: &[u8], start: Option<usize>) -> Result<Document, ReadError> 
         damage(&error, text, start)
     })?;
     let version = document.asset.min_version.as_ref().unwrap_or(&document.asset.version);
+    if version.starts_with("1.") {
+        return Err(other_version(start.map_or(Place::Line(1), Place::Byte), "1.0"));
+    }
     if version.split('.').next() != Some("2")
         || document.asset.min_version.as_ref().is_some_and(|v| v != "2.0")
     {
@@ -73,8 +88,8 @@ fn parse_text(text: &[u8], start: Option<usize>) -> Result<Document, ReadError> 
     }
     let meshes = document.meshes.iter_mut().map(|mesh| &mut mesh.name);
     let nodes = document.nodes.iter_mut().map(|node| &mut node.name);
-    meshes.chain(nodes).for_each(shorten);
-    Ok(document)
+    let num_cut = meshes.chain(nodes).map(shorten).filter(|&is_cut| is_cut).count();
+    Ok((document, num_cut > 0))
 }
 
 /// Why a text is no document.
@@ -98,7 +113,7 @@ fn other_version(place: Place, version: &str) -> ReadError {
     ReadError::Unsupported { place, message }
 }
 
-/// Whether a text has its buffers by name, as glTF 1.0.
+/// Whether a text has its buffers by name, as glTF 1.0, or says that it is that.
 fn is_version_1(text: &[u8]) -> bool {
     #[derive(Deserialize)]
     struct Former {
@@ -107,12 +122,25 @@ fn is_version_1(text: &[u8]) -> bool {
         #[serde(rename = "meshes")]
         _meshes: BTreeMap<String, IgnoredAny>,
     }
-    serde_json::from_slice::<Former>(text).is_ok()
+    #[derive(Deserialize)]
+    struct Named {
+        asset: NamedAsset,
+    }
+    #[derive(Deserialize)]
+    struct NamedAsset {
+        version: Value,
+    }
+    let is_1 = |version: &Value| version.to_string().trim_start_matches('"').starts_with("1.");
+    let named = serde_json::from_slice::<Named>(text);
+    named.is_ok_and(|named| is_1(&named.asset.version)) || serde_json::from_slice::<Former>(text).is_ok()
 }
 
-pub(super) fn shorten(name: &mut String) {
+/// Says whether the name was too long.
+pub(super) fn shorten(name: &mut String) -> bool {
+    let length = name.len();
     let fits = |&at: &usize| name.is_char_boundary(at);
     name.truncate((0..=MAX_NAME_BYTES.min(name.len())).rev().find(fits).unwrap_or(0));
+    name.len() < length
 }
 
 /// Collects the buffers of a document: the binary chunk, data in the text, files in the folder `folder`.

@@ -1,10 +1,13 @@
 //! Fields of points that formats do not all have: near infrared, and the extra bytes that a file describes.
 
 use super::header::{Header, layout, variable_records};
+use crate::io::builder::plain;
 use crate::mesh::{Attribute, ComponentType, Domain, Semantic, Values};
 
 /// Described fields that are kept; of more the first ones. They bound what a byte of a compressed file may become.
 const MAX_FIELDS: usize = 16;
+/// Names of others in a report.
+const MAX_OTHERS: usize = 16;
 /// Bytes of a description of extra bytes, and the places of its fields: LAS 1.4, table 24.
 const DESCRIPTION_BYTES: usize = 192;
 const TYPE: usize = 2;
@@ -19,6 +22,8 @@ const HAS_OFFSET: u8 = 1 << 4;
 /// One field of all points that are kept, as its bytes.
 pub(super) struct Column {
     name: String,
+    /// As the file has it.
+    own_name: String,
     /// Place in a record.
     at: usize,
     number: Number,
@@ -61,8 +66,9 @@ impl Number {
     }
 }
 
-/// The columns of a file, and whether all of its extra bytes are among them.
-pub(super) fn columns(header: &Header, bytes: &[u8]) -> (Vec<Column>, bool) {
+/// The columns of a file, and what its extra bytes are that are not among them.
+pub(super) fn columns(header: &Header, bytes: &[u8]) -> (Vec<Column>, Vec<String>) {
+    let mut others = Vec::new();
     let mut columns: Vec<Column> = near_infrared(header.format).into_iter().collect();
     let (_, least_bytes) = layout(header.format).unwrap_or_default();
     let mut at = least_bytes;
@@ -71,6 +77,9 @@ pub(super) fn columns(header: &Header, bytes: &[u8]) -> (Vec<Column>, bool) {
     for description in descriptions.flat_map(|record| record.data.chunks_exact(DESCRIPTION_BYTES)) {
         let Some(number) = Number::of_code(description[TYPE]) else {
             let Some(skipped) = skipped_bytes(description) else { break };
+            if at < header.record_bytes {
+                others.push(format!("extra bytes {}", plain(&own_name(description))));
+            }
             at += skipped;
             continue;
         };
@@ -78,10 +87,17 @@ pub(super) fn columns(header: &Header, bytes: &[u8]) -> (Vec<Column>, bool) {
         at += number.num_bytes();
         if at <= header.record_bytes && columns.len() < MAX_FIELDS {
             columns.push(column);
+        } else if at <= header.record_bytes {
+            others.push(format!("extra bytes {}", plain(&column.own_name)));
         }
     }
-    let kept: usize = columns.iter().filter(|c| c.at >= least_bytes).map(|c| c.number.num_bytes()).sum();
-    (columns, least_bytes + kept == header.record_bytes)
+    others.truncate(MAX_OTHERS);
+    if at < header.record_bytes {
+        others.push("extra bytes that nothing describes".to_owned());
+    } else if at > header.record_bytes {
+        others.push("extra bytes beyond the end of points".to_owned());
+    }
+    (columns, others)
 }
 
 /// The bytes of a field that is not kept: a number of bytes that nothing is known of, or one of the arrays of two or
@@ -100,23 +116,35 @@ fn skipped_bytes(description: &[u8]) -> Option<usize> {
 
 fn near_infrared(format: u8) -> Option<Column> {
     let number = Number::Of(ComponentType::U16);
-    let column = Column { name: "nir".to_owned(), at: 36, number, scaling: None, bytes: Vec::new() };
+    let name = || "nir".to_owned();
+    let column = Column { name: name(), own_name: name(), at: 36, number, scaling: None, bytes: Vec::new() };
     matches!(format, 8 | 10).then_some(column)
 }
 
 fn column(description: &[u8], at: usize, number: Number, index: usize) -> Column {
-    let text = description[NAME].split(|&byte| byte == 0).next().unwrap_or_default();
-    let name = String::from_utf8_lossy(text).split_whitespace().collect::<Vec<_>>().join("_");
+    let own_name = own_name(description);
+    let name = own_name.split_whitespace().collect::<Vec<_>>().join("_");
     let f64_at = |at: usize| f64::from_le_bytes(std::array::from_fn(|k| description[at + k]));
     let options = description[OPTIONS];
     let scale = if options & HAS_SCALE != 0 { f64_at(SCALE) } else { 1.0 };
     let offset = if options & HAS_OFFSET != 0 { f64_at(OFFSET) } else { 0.0 };
     let scaling = (options & (HAS_SCALE | HAS_OFFSET) != 0).then_some((scale, offset));
     let name = if name.is_empty() { format!("extra_{index}") } else { name };
-    Column { name, at, number, scaling, bytes: Vec::new() }
+    Column { name, own_name, at, number, scaling, bytes: Vec::new() }
+}
+
+/// The name in a description.
+fn own_name(description: &[u8]) -> String {
+    let text = description[NAME].split(|&byte| byte == 0).next().unwrap_or_default();
+    String::from_utf8_lossy(text).into_owned()
 }
 
 impl Column {
+    /// The name in the file, if there is one and it is not `name`.
+    pub fn other_name(&self, name: &str) -> Option<&str> {
+        Some(self.own_name.as_str()).filter(|own| !own.is_empty() && *own != name)
+    }
+
     /// Appends the field of a record.
     pub fn push(&mut self, record: &[u8]) {
         self.bytes.extend_from_slice(&record[self.at..self.at + self.number.num_bytes()]);

@@ -1,6 +1,6 @@
 //! The coordinate reference system of a file: records of the user `LASF_Projection` (LAS 1.4, section 3).
 
-use super::header::{Header, extended_records, variable_records};
+use super::header::{Header, all_records};
 use crate::io::ReadReport;
 
 const WKT: u16 = 2112;
@@ -14,8 +14,11 @@ const MAX_TEXT_BYTES: usize = u16::MAX as usize;
 /// The records as pairs of a key and a text, each key once (`format/SPEC.md`, section 4.9).
 pub(super) fn metadata(header: &Header, bytes: &[u8], report: &mut ReadReport) -> Vec<(String, String)> {
     let mut pairs: Vec<(String, String)> = Vec::new();
-    let records = variable_records(header, bytes).chain(extended_records(header, bytes));
-    for record in records.filter(|record| record.user.starts_with(b"LASF_Projection")) {
+    for record in all_records(header, bytes).filter(|record| record.is_of(b"LASF_Projection")) {
+        if record.is_cut {
+            report.ignore(&format!("record {} of LASF_Projection, in which the file ends", record.id));
+            continue;
+        }
         let Some((key, text)) = described(record.id, record.data) else {
             report.ignore(&format!("record {} of LASF_Projection", record.id));
             continue;

@@ -54,10 +54,46 @@ pub(super) struct VariableRecord<'a> {
     pub user: &'a [u8],
     pub id: u16,
     pub data: &'a [u8],
+    /// Whether the file ends before the data do.
+    pub is_cut: bool,
 }
 
-/// The variable length records, up to the first one that does not fit.
+impl VariableRecord<'_> {
+    pub fn is_of(&self, user: &[u8]) -> bool {
+        self.user.starts_with(user)
+    }
+
+    /// Whether it is something that is read, or says how the file is packed.
+    fn is_known(&self) -> bool {
+        let is_description = self.is_of(b"LASF_Spec") && self.id == 4;
+        is_description
+            || [&b"LASF_Projection"[..], b"laszip encoded", b"copc"].iter().any(|user| self.is_of(user))
+    }
+}
+
+/// Whether a file has records that nothing here reads.
+pub(super) fn has_other_records(header: &Header, bytes: &[u8]) -> bool {
+    all_records(header, bytes).any(|record| !record.is_known())
+}
+
+/// The records in front of the points and behind them; a last one may be cut.
+pub(super) fn all_records<'a>(
+    header: &Header,
+    bytes: &'a [u8],
+) -> impl Iterator<Item = VariableRecord<'a>> + use<'a> {
+    records_before(header, bytes).chain(extended_records(header, bytes))
+}
+
+/// The variable length records in front of the points, up to the first one that does not fit.
 pub(super) fn variable_records<'a>(
+    header: &Header,
+    bytes: &'a [u8],
+) -> impl Iterator<Item = VariableRecord<'a>> + use<'a> {
+    records_before(header, bytes).filter(|record| !record.is_cut)
+}
+
+/// The first one that does not fit is the last, and cut.
+fn records_before<'a>(
     header: &Header,
     bytes: &'a [u8],
 ) -> impl Iterator<Item = VariableRecord<'a>> + use<'a> {
@@ -66,15 +102,21 @@ pub(super) fn variable_records<'a>(
     std::iter::from_fn(move || {
         let head = bytes.get(at..end)?.get(..HEAD_BYTES)?;
         let u16_at = |place: usize| u16::from_le_bytes([head[place], head[place + 1]]);
-        let data = bytes.get(at + HEAD_BYTES..)?.get(..usize::from(u16_at(20)))?;
-        let record = VariableRecord { at, user: &head[2..18], id: u16_at(18), data };
-        at += HEAD_BYTES + data.len();
+        let rest = bytes.get(at + HEAD_BYTES..)?;
+        let (data, is_cut) = start_of(rest, usize::from(u16_at(20)));
+        let record = VariableRecord { at, user: &head[2..18], id: u16_at(18), data, is_cut };
+        at = if is_cut { bytes.len() } else { at + HEAD_BYTES + data.len() };
         Some(record)
     })
 }
 
-/// The records behind the points, up to the first one that does not fit. Version 1.4 has them.
-pub(super) fn extended_records<'a>(
+/// As many bytes, and whether there are fewer.
+fn start_of(bytes: &[u8], length: usize) -> (&[u8], bool) {
+    bytes.get(..length).map_or((bytes, true), |start| (start, false))
+}
+
+/// The records behind the points; the first one that does not fit is the last, and cut. Version 1.4 has them.
+fn extended_records<'a>(
     header: &Header,
     bytes: &'a [u8],
 ) -> impl Iterator<Item = VariableRecord<'a>> + use<'a> {
@@ -88,10 +130,11 @@ pub(super) fn extended_records<'a>(
         num_left = num_left.checked_sub(1)?;
         let head = bytes.get(at..)?.get(..HEAD_BYTES)?;
         let length = u64::from_le_bytes(std::array::from_fn(|k| head[20 + k]));
-        let data = bytes.get(at + HEAD_BYTES..)?.get(..usize::try_from(length).ok()?)?;
+        let rest = bytes.get(at + HEAD_BYTES..)?;
+        let (data, is_cut) = start_of(rest, usize::try_from(length).unwrap_or(usize::MAX));
         let id = u16::from_le_bytes([head[18], head[19]]);
-        let record = VariableRecord { at, user: &head[2..18], id, data };
-        at += HEAD_BYTES + data.len();
+        let record = VariableRecord { at, user: &head[2..18], id, data, is_cut };
+        at = if is_cut { bytes.len() } else { at + HEAD_BYTES + data.len() };
         Some(record)
     })
 }

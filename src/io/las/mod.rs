@@ -13,7 +13,7 @@ mod points;
 mod quiet;
 mod thin;
 
-use super::{MeshFile, Place, ReadError, builder::MeshBuilder};
+use super::{MeshFile, Place, ReadError, ReadReport, builder::MeshBuilder};
 use crate::mesh::{Attribute, Domain, Semantic, Values};
 use columns::Column;
 use points::{Cloud, Point};
@@ -72,12 +72,13 @@ pub(super) fn read(bytes: &[u8], options: &TerrainOptions) -> Result<MeshFile, R
     }
     let position = |point: &Point| [0, 1, 2].map(|k| f64::from(point.grid[k]) * scale[k] + offset[k]);
     builder.positions = points.iter().map(position).collect();
-    builder.attributes.list = attributes(&points, cloud.has_colour, &cloud.columns);
+    builder.attributes.list = attributes(&points, cloud.has_colour, &cloud.columns, &mut builder.report);
     let header = header::read_header(bytes)?;
     builder.attributes.metadata = crs::metadata(&header, bytes, &mut builder.report).into();
-    builder.report.ignore("returns, angles, times and sources of points");
-    if cloud.has_other_bytes {
-        builder.report.ignore("extra bytes");
+    builder.report.ignore("returns, angles, times, sources, flags and user data of points");
+    cloud.other_bytes.iter().for_each(|name| builder.report.ignore(name));
+    if header::has_other_records(&header, bytes) {
+        builder.report.ignore("other variable length records");
     }
     builder.finish()
 }
@@ -90,7 +91,12 @@ fn longest_edge(triangle: [u32; 3], points: &[Point], scale: [f64; 3]) -> f64 {
     length(a, b).max(length(b, c)).max(length(c, a))
 }
 
-fn attributes(points: &[Point], has_colour: bool, columns: &[Column]) -> Vec<Attribute> {
+fn attributes(
+    points: &[Point],
+    has_colour: bool,
+    columns: &[Column],
+    report: &mut ReadReport,
+) -> Vec<Attribute> {
     let of_vertices =
         |name: &str, semantic, n, values| Attribute::new(name, semantic, Domain::Vertex, n, values);
     let classes = Values::U8(points.iter().map(|point| point.classification).collect());
@@ -100,13 +106,20 @@ fn attributes(points: &[Point], has_colour: bool, columns: &[Column]) -> Vec<Att
         of_vertices("intensity", Semantic::Generic, 1, intensities),
     ];
     if has_colour {
-        let colour = of_vertices("red green blue", Semantic::Color(0), 3, colours(points));
+        let colours = colours(points);
+        if matches!(colours, Values::U8(_)) && points.iter().any(|point| point.colour != [0; 3]) {
+            report.colours_of_8_bits = points.len();
+        }
+        let colour = of_vertices("red green blue", Semantic::Color(0), 3, colours);
         list.push(Attribute { is_normalized: true, ..colour });
     }
     let mut taken: HashSet<String> = TAKEN.iter().map(|&name| name.to_owned()).collect();
     for column in columns {
         let attribute = column.attribute(points.iter().map(|point| point.index));
         let name = free_name(&attribute.name, &taken);
+        if let Some(own) = column.other_name(&name) {
+            report.rename(own, &name);
+        }
         taken.insert(name.clone());
         list.push(Attribute { name, ..attribute });
     }

@@ -29,8 +29,8 @@ pub(super) struct Cloud {
     pub offset: [f64; 3],
     pub has_colour: bool,
     pub columns: Vec<Column>,
-    /// Whether there are bytes that are in no column.
-    pub has_other_bytes: bool,
+    /// What else the points have: extra bytes that are in no column.
+    pub other_bytes: Vec<String>,
     /// Points that the file declares deleted, which are not among `points`.
     pub num_withheld: usize,
 }
@@ -39,7 +39,7 @@ pub(super) struct Cloud {
 pub(super) fn read(bytes: &[u8]) -> Result<Cloud, ReadError> {
     let header = read_header(bytes)?;
     let (colour_at, _) = layout(header.format).unwrap_or_default();
-    let (mut columns, is_all) = columns(&header, bytes);
+    let (mut columns, other_bytes) = columns(&header, bytes);
     let (mut points, mut num_withheld) = (Vec::new(), 0);
     let mut take = |records: &[u8]| {
         for record in records.chunks_exact(header.record_bytes) {
@@ -58,8 +58,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Cloud, ReadError> {
         take(uncompressed(&header, bytes)?);
     }
     let Header { scale, offset, .. } = header;
-    let (has_colour, has_other_bytes) = (colour_at.is_some(), !is_all);
-    Ok(Cloud { points, scale, offset, has_colour, columns, has_other_bytes, num_withheld })
+    let has_colour = colour_at.is_some();
+    Ok(Cloud { points, scale, offset, has_colour, columns, other_bytes, num_withheld })
 }
 
 fn is_withheld(record: &[u8], format: u8) -> bool {

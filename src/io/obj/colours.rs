@@ -14,6 +14,8 @@ pub(super) struct Colours {
     num_vertices: usize,
     numbers: Vec<f64>,
     rows: Rows,
+    /// Of vertices with four numbers behind the position: the row, and the first of the four.
+    fours: Vec<(u32, f64)>,
     /// Red, green and blue of all blocks.
     blocks: Vec<u8>,
     block_rows: Rows,
@@ -30,6 +32,31 @@ impl Colours {
             self.numbers.extend(colour);
         }
         self.num_vertices += 1;
+    }
+
+    /// A vertex with four numbers behind its position.
+    pub fn four(&mut self, [first, colour @ ..]: [f64; 4]) {
+        self.fours.push(((self.numbers.len() / 3) as u32, first));
+        self.vertex(Some(colour));
+    }
+
+    /// Whether the four numbers are a colour with alpha, rather than a weight, which is 1, and a colour.
+    fn has_alpha(&self) -> bool {
+        let last = |&(row, _): &(u32, f64)| self.numbers[3 * row as usize + 2];
+        let is_opaque = self.fours.iter().all(|four| last(four) == 1.0);
+        !self.fours.is_empty() && (is_opaque || self.fours.iter().any(|&(_, first)| first != 1.0))
+    }
+
+    /// Red, green, blue and alpha, which is 1 where there is none.
+    fn with_alpha(&self) -> Vec<f64> {
+        let mut numbers: Vec<f64> =
+            self.numbers.chunks_exact(3).flat_map(|colour| [colour[0], colour[1], colour[2], 1.0]).collect();
+        for &(row, first) in &self.fours {
+            let colour = &mut numbers[4 * row as usize..][..4];
+            colour.rotate_right(1);
+            colour[0] = first;
+        }
+        numbers
     }
 
     /// A line of a block; `text` follows the keyword.
@@ -69,7 +96,13 @@ impl Colours {
         if !self.blocks.is_empty() {
             report.ignore("#MRGB beside other colours");
         }
-        Some(Attribute { indices: Some(self.rows.0), ..of(Values::F64(self.numbers)) })
+        let colour = if self.has_alpha() {
+            let values = Values::F64(self.with_alpha());
+            Attribute::new("v.rgba", Semantic::Color(0), Domain::Vertex, 4, values)
+        } else {
+            of(Values::F64(self.numbers))
+        };
+        Some(Attribute { indices: Some(self.rows.0), ..colour })
     }
 }
 

@@ -177,8 +177,9 @@ impl Gathered {
             [None, ..] => {}
             [Some(r), Some(g), Some(b), None, _] => colour = Some([channel(r)?, channel(g)?, channel(b)?]),
             [Some(w), Some(r), Some(g), Some(b), None] => {
-                weight = Some(w);
-                colour = Some([channel(r)?, channel(g)?, channel(b)?]);
+                let numbers = [channel(w)?, channel(r)?, channel(g)?, channel(b)?];
+                self.colours.four(numbers);
+                return Ok(());
             }
             [Some(w), None, ..] => weight = Some(w),
             _ => report.ignore("v.more"),

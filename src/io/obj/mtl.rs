@@ -32,7 +32,10 @@ pub(super) fn attach(file: &mut MeshFile, folder: &mut Folder) {
     for statement in &*attributes.material_libraries {
         for (name, text) in read(statement, folder, &mut num_left, report) {
             let folder_of = name.rfind('/').map_or("", |slash| &name[..=slash]);
-            known.parse(&text, folder_of);
+            if !known.parse(&text, folder_of) {
+                let name = quoted(name.as_bytes());
+                report.ignore(&format!("materials of {name}, none of which a face has"));
+            }
         }
     }
     let mut materials = Materials::default();
@@ -83,8 +86,10 @@ impl<'a> Library<'a> {
         Self { wanted: names.iter().map(String::as_str).collect(), materials: HashMap::new() }
     }
 
-    /// Adds those of a text that are not known yet. `folder`: of the text, with its last slash.
-    fn parse(&mut self, text: &[u8], folder: &str) {
+    /// Adds those of a text that are not known yet; says whether any of it is wanted. `folder`: of the text, with its last
+    /// slash.
+    fn parse(&mut self, text: &[u8], folder: &str) -> bool {
+        let mut is_wanted = false;
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         let mut current: Option<(String, Material)> = None;
         for line in text.split(|&byte| matches!(byte, b'\n' | b'\r')) {
@@ -94,6 +99,7 @@ impl<'a> Library<'a> {
             if keyword == b"newmtl" {
                 self.materials.extend(current.take());
                 let name = decoded(rest);
+                is_wanted |= self.wanted.contains(&*name);
                 let is_new = self.wanted.contains(&*name) && !self.materials.contains_key(&name);
                 current = is_new.then(|| (name, Material::default()));
             } else if let Some((_, material)) = &mut current {
@@ -101,6 +107,7 @@ impl<'a> Library<'a> {
             }
         }
         self.materials.extend(current);
+        is_wanted
     }
 }
 
@@ -125,7 +132,7 @@ struct Material {
     normal_map: Option<TextureMap>,
     bump_map: Option<TextureMap>,
     opacity_map: Option<TextureMap>,
-    /// Maps that glTF has no place for.
+    /// Statements that glTF has no place for, each once.
     others: Vec<String>,
 }
 
@@ -139,11 +146,31 @@ struct TextureMap {
     bump: f64,
 }
 
+/// The longest word that is named as a statement, and how many of a material are.
+const MAX_KEYWORD_BYTES: usize = 32;
+const MAX_OTHERS: usize = 32;
+
+/// Whether a statement that is read has no number or file where it needs one.
+fn is_senseless(keyword: &[u8], rest: &[u8]) -> bool {
+    match keyword {
+        b"kd" | b"ks" | b"ke" => colour(rest).is_none(),
+        b"ns" | b"tr" | b"pr" | b"pm" => words(rest).next().and_then(finite).is_none(),
+        b"d" => words(rest).find_map(finite).is_none(),
+        b"map_kd" | b"map_ke" | b"norm" | b"map_norm" | b"map_kn" | b"map_bump" | b"bump" | b"map_d" => {
+            TextureMap::parse(rest, "").is_none()
+        }
+        _ => false,
+    }
+}
+
 impl Material {
     fn take(&mut self, keyword: &[u8], rest: &[u8], folder: &str) {
         let number = || words(rest).next().and_then(finite);
         let map = || TextureMap::parse(rest, folder);
         let keyword = keyword.to_ascii_lowercase();
+        if is_senseless(&keyword, rest) {
+            self.note("senseless ", &keyword);
+        }
         match &*keyword {
             b"kd" => self.diffuse = colour(rest).or(self.diffuse),
             b"ks" => self.specular = colour(rest).or(self.specular),
@@ -158,11 +185,18 @@ impl Material {
             b"norm" | b"map_norm" | b"map_kn" => self.normal_map = map(),
             b"map_bump" | b"bump" => self.bump_map = map(),
             b"map_d" => self.opacity_map = map(),
-            b"disp" | b"decal" | b"refl" => self.others.push(decoded(&keyword)),
-            _ if keyword.starts_with(b"map_") && keyword.len() <= 32 && keyword.is_ascii() => {
-                self.others.push(decoded(&keyword));
-            }
-            _ => {}
+            b"" => {}
+            _ if keyword[0] == b'#' => {}
+            _ => self.note("", &keyword),
+        }
+    }
+
+    /// Notes a statement that is not kept.
+    fn note(&mut self, how: &str, keyword: &[u8]) {
+        let is_word = keyword.len() <= MAX_KEYWORD_BYTES && keyword.iter().all(u8::is_ascii_graphic);
+        let name = if is_word { how.to_owned() + &decoded(keyword) } else { "other statements".to_owned() };
+        if self.others.len() < MAX_OTHERS && !self.others.contains(&name) {
+            self.others.push(name);
         }
     }
 
@@ -175,6 +209,9 @@ impl Material {
     ) -> Value {
         for other in &self.others {
             report.ignore(&format!("{other} of materials"));
+        }
+        if self.specular.is_some_and(|specular| specular != [0.0; 3]) {
+            report.ignore("ks of materials");
         }
         let mut texture =
             |map: &Option<TextureMap>, all: &mut Materials| map.as_ref()?.to_gltf(all, folder, report);

@@ -2,7 +2,7 @@
 
 use super::{
     header::{Element, Encoding, Property},
-    scalar::{Scalar, push_wide},
+    scalar::{Scalar, push_wide, widen},
 };
 use crate::{
     io::{
@@ -130,21 +130,13 @@ impl<'s, 'a> Body<'s, 'a> {
         &self.line[self.word.clone()]
     }
 
-    /// The next number as the bits of its type. In a text it must be a number that the type has.
-    pub fn bits(&mut self, scalar: Scalar) -> Result<u64, Fault> {
+    /// The next number as the bits of its type. In a text it must be a number that the type has, and no float32.
+    fn bits(&mut self, scalar: Scalar) -> Result<u64, Fault> {
         if !self.is_text() {
             return self.raw(scalar);
         }
         let number = self.number(scalar)?;
         match scalar.kept {
-            // Through float64 a float32 would be rounded twice.
-            ComponentType::F32 if number.is_finite() => {
-                let float = std::str::from_utf8(self.word()).ok().and_then(|word| word.parse::<f32>().ok());
-                Ok(u64::from(float.ok_or(Fault::NotANumber)?.to_bits()))
-            }
-            // NaN of either sign is written alike.
-            ComponentType::F32 if number.is_nan() => Ok(u64::from(f32::NAN.to_bits())),
-            ComponentType::F32 => Ok(u64::from((number as f32).to_bits())),
             ComponentType::F64 if number.is_nan() => Ok(f64::NAN.to_bits()),
             ComponentType::F64 => Ok(number.to_bits()),
             _ if scalar.fits(number) => Ok(scalar.integer_bits(number)),
@@ -155,6 +147,9 @@ impl<'s, 'a> Body<'s, 'a> {
     /// Adds the next number to an attribute.
     #[inline]
     pub fn push(&mut self, values: &mut Values, scalar: Scalar) -> Result<(), Fault> {
+        if self.is_text() && scalar.kept == ComponentType::F32 {
+            return self.push_float(values, scalar);
+        }
         if !scalar.is_wide {
             values.push_bits(self.bits(scalar)?);
             return Ok(());
@@ -162,6 +157,26 @@ impl<'s, 'a> Body<'s, 'a> {
         let number = self.number(scalar)?;
         self.has_rounded |= number.abs() >= FIRST_INEXACT;
         push_wide(values, scalar, number);
+        Ok(())
+    }
+
+    /// Adds a number of a text; one that no float32 is makes all of them float64, as it does positions.
+    fn push_float(&mut self, values: &mut Values, scalar: Scalar) -> Result<(), Fault> {
+        let number = self.number(scalar)?;
+        if number.is_finite() && f64::from(number as f32) != number {
+            widen(values);
+        }
+        match values {
+            Values::F64(values) => values.push(if number.is_nan() { f64::NAN } else { number }),
+            // Through float64 a float32 would be rounded twice.
+            _ if number.is_finite() => {
+                let float = std::str::from_utf8(self.word()).ok().and_then(|word| word.parse::<f32>().ok());
+                values.push_bits(u64::from(float.ok_or(Fault::NotANumber)?.to_bits()));
+            }
+            // NaN of either sign is written alike.
+            _ if number.is_nan() => values.push_bits(u64::from(f32::NAN.to_bits())),
+            _ => values.push_bits(u64::from((number as f32).to_bits())),
+        }
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Which attribute is written where in PLY, and as what.
 
 use super::columns::{is_readable, property_names};
-use super::textures::TEXTURE_FILE;
+use super::textures::{self, TEXTURE_FILE};
 use crate::{
     io::{
         ColorSpace, ColorType, WriteError, WriteOptions,
@@ -50,8 +50,14 @@ impl<'a> Layout<'a> {
         let (numbers, empty): (Vec<&Attribute>, Vec<&Attribute>) =
             numbers.into_iter().partition(|attribute| has_values(attribute, mesh));
         empty.iter().for_each(|attribute| losses.push(dropped(&attribute.name, "it has no values")));
+        // The names say it, and a stream may have them in another order.
+        let (stale, numbers): (Vec<_>, Vec<_>) =
+            numbers.into_iter().partition(|a| !textures.is_empty() && textures::is_number(a));
+        stale.iter().for_each(|attribute| losses.push(dropped(&attribute.name, "")));
         let written = numbers.into_iter().map(|attribute| written_as(attribute, options, losses)).collect();
-        let (mesh, written) = without_seams(mesh, joined(written, mesh), options, losses)?;
+        let (mesh, mut written) = without_seams(mesh, joined(written, mesh), options, losses)?;
+        let texture_numbers = textures.first().and_then(|textures| textures::numbers(textures, &mesh));
+        written.extend(texture_numbers.map(Cow::Owned));
         let textures = textures.first().and_then(|attribute| attribute.values.names()).unwrap_or_default();
         let mut layout = Self { textures, ..Self::default() };
         let mut neutral = Neutral::new(&mesh);

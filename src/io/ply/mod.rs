@@ -19,10 +19,11 @@ mod write;
 pub(super) use write::Plan;
 
 use super::{MeshFile, ReadError, beside::Folder, builder::MeshBuilder, builder::fan, source::Source};
-use crate::mesh::{Attribute, Domain, NO_ENTRY, Semantic, Values};
+use crate::mesh::{Attribute, ComponentType, Domain, NO_ENTRY, Semantic, Values};
 use body::Body;
 use columns::attributes_of;
 use header::{Element, Property, read_header};
+use scalar::widen;
 
 /// Reads a PLY file, and the images of its textures from `folder`. Elements other than `vertex`, `face` and `tristrips` are skipped.
 pub(super) fn read(source: &mut Source, folder: &mut Folder) -> Result<MeshFile, ReadError> {
@@ -167,9 +168,10 @@ fn read_faces(
         num_rows: 0,
     };
     let mut numbers = Vec::new();
-    let mut wedge_bits = Vec::new();
+    let wedge_type = wedge_at.map_or(ComponentType::F32, |k| element.properties[k].scalar.kept);
+    let mut wedge_values = Values::new(wedge_type);
     let read_face =
-        |body: &mut Body, attributes: &mut [Attribute], numbers: &mut Vec<f64>, bits: &mut Vec<u64>| {
+        |body: &mut Body, attributes: &mut [Attribute], numbers: &mut Vec<f64>, wedge: &mut Values| {
             body.begin_element()?;
             for (k, property) in element.properties.iter().enumerate() {
                 match (property.list_count, owners[k]) {
@@ -181,7 +183,7 @@ fn read_faces(
                     }
                     (Some(count), _) if wedge_at == Some(k) => {
                         for _ in 0..body.list_length(count)? {
-                            bits.push(body.bits(property.scalar)?);
+                            body.push(wedge, property.scalar)?;
                         }
                     }
                     _ => body.skip(property)?,
@@ -193,15 +195,15 @@ fn read_faces(
     let mut corners = Vec::new();
     for index in 0..element.count {
         numbers.clear();
-        wedge_bits.clear();
+        wedge_values.truncate(0);
         corners.clear();
-        read_face(body, &mut faces.attributes, &mut numbers, &mut wedge_bits)
+        read_face(body, &mut faces.attributes, &mut numbers, &mut wedge_values)
             .map_err(|fault| body.error(fault, element, index))?;
         for &number in &numbers {
             corners.push(checked_index(number, num_vertices, body, element, index)?);
         }
         builder.push_polygon(&corners);
-        faces.end_polygon(corners.len(), &wedge_bits, builder)?;
+        faces.end_polygon(corners.len(), &wedge_values, builder)?;
     }
     builder.num_bytes = body.offset();
     builder.check_rows(faces.attributes.len(), builder.triangles.len())?;
@@ -226,7 +228,7 @@ impl Faces {
     fn end_polygon(
         &mut self,
         num_corners: usize,
-        wedge_bits: &[u64],
+        wedge_values: &Values,
         builder: &mut MeshBuilder,
     ) -> Result<(), ReadError> {
         let too_many = |_| ReadError::TooLarge { message: "more than 2^32 values".to_owned() };
@@ -243,14 +245,18 @@ impl Faces {
         }
         self.num_rows += 1;
         if let Some(wedge) = &mut self.wedge {
-            if wedge_bits.len() == 2 * num_corners {
+            if wedge_values.len() == 2 * num_corners {
                 let first = u32::try_from(wedge.num_entries()).map_err(too_many)?;
                 u32::try_from(wedge.num_entries() + num_corners).map_err(too_many)?;
-                wedge_bits.iter().for_each(|&bits| wedge.values.push_bits(bits));
+                // Once a number is float64, all that follow are.
+                if wedge_values.component_type() == Some(ComponentType::F64) {
+                    widen(&mut wedge.values);
+                }
+                wedge.values.append(wedge_values.clone());
                 let row = |corner: usize| first + corner as u32;
                 self.wedge_rows.extend(fan(num_corners).flatten().map(row));
             } else {
-                if !wedge_bits.is_empty() {
+                if !wedge_values.is_empty() {
                     builder.report.ignore("face.texcoord of another length");
                 }
                 self.wedge_rows.resize(3 * builder.triangles.len(), NO_ENTRY);

@@ -82,6 +82,13 @@ fn unit_of(word: &[u8]) -> f64 {
     10f64.powi(exponent.saturating_sub(num_decimals))
 }
 
+/// Makes numbers float64.
+pub(super) fn widen(values: &mut Values) {
+    if values.component_type() != Some(ComponentType::F64) {
+        *values = Values::F64((0..values.len()).filter_map(|k| values.number(k)).collect());
+    }
+}
+
 /// Adds an integer of 64 bits.
 pub(super) fn push_wide(values: &mut Values, scalar: Scalar, number: f64) {
     if values.component_type() != Some(ComponentType::F64) {

@@ -23,7 +23,7 @@ impl Scene {
             let known = self.gltf_materials.get_or_insert_with(GltfMaterials::default);
             gltf::append_materials(known, more, &renamed);
         }
-        other.report.ignored.iter().for_each(|name| self.report.ignore(name));
+        self.report.add(&other.report);
         self.num_bytes = self.num_bytes.saturating_add(other.num_bytes);
     }
 

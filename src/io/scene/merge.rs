@@ -28,7 +28,7 @@ impl Scene {
     pub fn merge(mut self) -> Result<MeshFile, ReadError> {
         if self.is_single() {
             let mut file = self.meshes.remove(0);
-            self.report.ignored.iter().for_each(|name| file.report.ignore(name));
+            file.report.add(&self.report);
             file.attributes.gltf_materials = self.gltf_materials;
             return Ok(file);
         }
@@ -169,11 +169,7 @@ impl Merger {
         self.libraries.add(&attributes.material_libraries);
         self.add_metadata(&attributes.metadata);
         let builder = &mut self.builder;
-        report.ignored.iter().for_each(|name| builder.report.ignore(name));
-        builder.report.polygons_triangulated += report.polygons_triangulated;
-        builder.report.polygons_overlapping += report.polygons_overlapping;
-        builder.report.faces_skipped += report.faces_skipped;
-        builder.report.corners_welded += report.corners_welded;
+        builder.report.add(report);
         let is_mirrored = matches!(motion, Motion::Affine(transform) if determinant(&transform) < 0.0);
         let first_vertex = u32::try_from(builder.positions.len()).unwrap_or(NO_ENTRY);
         let num_before = builder.triangles.len();

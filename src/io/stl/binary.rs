@@ -25,14 +25,21 @@ pub(super) fn read(source: &mut Source, num_triangles: u32) -> Result<MeshFile, 
     }
     source.skip(HEADER_BYTES as u64);
     let mut welder = Welder::default();
+    let mut has_bytes = false;
     for _ in 0..num_triangles {
         let place = Place::Byte(source.offset());
         match source.take(TRIANGLE_BYTES) {
-            Some(record) => add_triangle(&mut welder, record, place)?,
+            Some(record) => {
+                has_bytes |= record[TRIANGLE_BYTES - 2..] != [0; 2];
+                add_triangle(&mut welder, record, place)?;
+            }
             None => break,
         }
     }
     source.skip(u64::MAX);
+    if has_bytes {
+        welder.builder.report.ignore("attribute bytes of triangles");
+    }
     let num_more = check_size(num_triangles, source.offset() as u64)?;
     if num_more > 0 {
         let bytes = if num_more == 1 { "byte" } else { "bytes" };

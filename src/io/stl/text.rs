@@ -18,7 +18,8 @@ enum Statement {
     Vertex,
     BeginLoop,
     EndLoop,
-    /// Names and normals.
+    Solid,
+    /// Normals, and names that came before.
     Else,
     Unknown,
 }
@@ -64,6 +65,11 @@ impl Parser {
             (Statement::Vertex | Statement::BeginLoop | Statement::EndLoop, _) => {
                 return Err(bad("out of place"));
             }
+            (Statement::Solid, _) => {
+                if words.next().is_some() {
+                    self.welder.builder.report.ignore("names of solids");
+                }
+            }
             (Statement::Else, _) => {}
             (Statement::Unknown, false) if self.pass_over(line.text) => {}
             (Statement::Unknown, _) => return Err(bad("not an STL statement")),
@@ -99,7 +105,9 @@ fn statement<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Statement {
         Statement::BeginLoop
     } else if is("endloop") {
         Statement::EndLoop
-    } else if is("solid") || is("endsolid") {
+    } else if is("solid") {
+        Statement::Solid
+    } else if is("endsolid") {
         Statement::Else
     } else if is("end") {
         end_of(words.next().unwrap_or_default())
