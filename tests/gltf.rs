@@ -661,7 +661,6 @@ fn what_is_not_kept_of_a_document_is_named() {
         "extras of the document",
         "materials that nothing has",
         "names of meshes",
-        "names of scenes",
         "nodes without meshes",
     ];
     assert_eq!(ignored, expected);

@@ -31,7 +31,6 @@ pub(super) fn note(document: &Document, instances: &[Instance], report: &mut Rea
         ("extras of the asset", has_others(&asset.extras)),
         ("extras of the document", document.extras.is_some()),
         ("extras of scenes", document.scenes.iter().any(|scene| scene.extras.is_some())),
-        ("names of scenes", document.scenes.iter().any(|scene| !scene.name.is_empty())),
         ("extras of nodes", document.nodes.iter().any(|node| node.extras.is_some())),
         ("extras of meshes", document.meshes.iter().any(|mesh| mesh.extras.is_some())),
         ("extras of primitives", primitives().any(|primitive| primitive.extras.is_some())),
