@@ -96,11 +96,17 @@ impl Colours {
         if !self.blocks.is_empty() {
             report.ignore("#MRGB beside other colours");
         }
-        let colour = if self.has_alpha() {
-            let values = Values::F64(self.with_alpha());
-            Attribute::new("v.rgba", Semantic::Color(0), Domain::Vertex, 4, values)
-        } else {
-            of(Values::F64(self.numbers))
+        let numbers = if self.has_alpha() { self.with_alpha() } else { Vec::new() };
+        let is_opaque = numbers.iter().skip(3).step_by(4).all(|&alpha| alpha == 1.0);
+        let colour = match (numbers.is_empty(), is_opaque) {
+            (true, _) => of(Values::F64(self.numbers)),
+            // An alpha of 1 everywhere says nothing.
+            (false, true) => {
+                of(Values::F64(numbers.as_chunks::<4>().0.iter().flat_map(|c| [c[0], c[1], c[2]]).collect()))
+            }
+            (false, false) => {
+                Attribute::new("v.rgba", Semantic::Color(0), Domain::Vertex, 4, Values::F64(numbers))
+            }
         };
         Some(Attribute { indices: Some(self.rows.0), ..colour })
     }
