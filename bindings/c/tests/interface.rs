@@ -390,7 +390,7 @@ fn losses_are_told_of_streams_and_meshes() {
         assert_eq!((last.stage, last.kind), (LossStage::Encoding as u32, LossKind::Reordered as u32));
         assert_eq!((last.count, last.largest_error.is_nan()), (-1, true));
         let message = CStr::from_ptr(last.message).to_str().unwrap();
-        assert_eq!(message, "vertices and triangles in another order");
+        assert_eq!(message, "vertices and triangles in another order: `--keep-order` keeps them");
         assert!(found(99).is_none() && last_error().contains("no loss 99"));
         assert_eq!(lwc_encoded_num_losses(null()), 0);
 
