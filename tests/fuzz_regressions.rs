@@ -102,3 +102,9 @@ fn attributes_survive_random_meshes_and_damage() {
         }
     }
 }
+
+/// A base mesh in tables that read behind its end: which error came depended on where slices of work ended.
+#[test]
+fn the_error_of_a_base_mesh_does_not_depend_on_slices() {
+    fuzzing::split_independent(&finding("split_independent_base_behind_its_end.bin"));
+}

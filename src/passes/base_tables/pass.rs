@@ -6,7 +6,7 @@ use super::placing::Placing;
 use super::symbols::GROUPS;
 use super::weights::{Factors, Weights};
 use crate::entropy::ans::models;
-use crate::entropy::ans::reader::PausedReader;
+use crate::entropy::ans::reader::{PausedReader, SymbolReader};
 use crate::passes::work_budget::WorkBudget;
 use crate::passes::{EXHAUSTED, GridMesh, Malformed};
 
@@ -16,10 +16,15 @@ pub(crate) const MEMORY_OF_MODELS: u64 = models::memory(GROUPS);
 /// A pass that has begun.
 pub(crate) struct BaseInTables {
     reader: PausedReader,
+    stages: Stages,
+}
+
+/// What is done, and what for.
+struct Stages {
     weights: Weights,
     looks_for_repeated: bool,
     quantization_bits: u32,
-    stage: Stage,
+    now: Stage,
 }
 
 enum Stage {
@@ -38,8 +43,8 @@ impl BaseInTables {
         quantization_bits: u32,
     ) -> Option<Self> {
         let Head { weights, looks_for_repeated, reader } = Head::read(payload)?;
-        let stage = Stage::Growing(Growth::new(num_vertices, num_faces));
-        Some(Self { reader, weights, looks_for_repeated, quantization_bits, stage })
+        let now = Stage::Growing(Growth::new(num_vertices, num_faces));
+        Some(Self { reader, stages: Stages { weights, looks_for_repeated, quantization_bits, now } })
     }
 
     /// Goes on; the mesh, once it is over.
@@ -49,11 +54,20 @@ impl BaseInTables {
         work: &mut WorkBudget,
     ) -> Result<Option<GridMesh>, Malformed> {
         let coder = &mut self.reader.resume(payload);
+        let mesh = self.stages.advance(coder, work);
+        // What else is found behind the end of the payload depends on where slices of work end.
+        if coder.is_exhausted() { Err(Malformed(EXHAUSTED)) } else { mesh }
+    }
+}
+
+impl Stages {
+    fn advance(
+        &mut self,
+        coder: &mut SymbolReader,
+        work: &mut WorkBudget,
+    ) -> Result<Option<GridMesh>, Malformed> {
         while work.is_left() {
-            if coder.is_exhausted() {
-                return Err(Malformed(EXHAUSTED));
-            }
-            self.stage = match std::mem::replace(&mut self.stage, Stage::Over) {
+            self.now = match std::mem::replace(&mut self.now, Stage::Over) {
                 Stage::Growing(mut growth) => {
                     if growth.code_some(coder, &mut (), work)? {
                         let factors = Factors::from(&self.weights);
