@@ -4,7 +4,7 @@ use super::args::LimitArgs;
 use super::exit::Failure;
 use super::losses::{self, Strictness};
 use super::mesh_out::MeshOut;
-use super::output::{Destination, print_json, say_written, size_of, with_ending};
+use super::output::{Destination, print_json_beside, say_written, size_of, with_ending};
 use super::quantity;
 use super::stream::{DecodedStream, StreamSource, Wanted, note_if_incomplete, note_if_no_level, reached};
 use super::ui::Ui;
@@ -16,7 +16,6 @@ use lwc::losses::{Loss, Losses, Stage};
 use lwc::mesh::Attributes;
 use lwc::{DecodeError, DecodeOptions, Decoder, TriMesh};
 use serde_json::{Value, json};
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Decode a stream, or as much of it as there is.
@@ -78,7 +77,9 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let DecodedStream { decoder, error } = source.decode(args.bytes, wanted, decoding, ui)?;
     let sound = sound_mesh(&decoder, error, args, &source.name(), ui);
     let (mesh, attributes) = sound.with_context(|| source.name())?;
-    note_what_is_missing(&decoder, args, &source.name(), ui);
+    if let (Some(level), Some(info)) = (args.level, decoder.info()) {
+        note_if_no_level(info, level, &source.name(), ui);
+    }
     let destination = match (chosen, source.path()) {
         (None, Some(stream)) => beside(stream, args, &decoder, format)?,
         (chosen, _) => chosen.unwrap_or(Destination::Stdout),
@@ -92,7 +93,7 @@ pub fn run(args: &Decode, ui: &Ui) -> anyhow::Result<()> {
     let mut losses = decoder.losses();
     if args.strictness.strict {
         losses.append(out.losses().with_context(|| destination.name())?);
-        args.strictness.check_or_print(&losses, args.json).with_context(|| source.name())?;
+        args.strictness.check_or_print(&losses, args.json, &destination).with_context(|| source.name())?;
     }
     losses.append(out.write(&destination)?);
     drop(bar);
@@ -119,10 +120,7 @@ impl Decoded<'_> {
         let losses: Losses = self.losses.iter().map(as_asked).collect();
         losses::warn(&self.destination.name(), &losses, ui);
         if self.args.json {
-            let to_file = self.destination != Destination::Stdout;
-            let out: Box<dyn Write> =
-                if to_file { Box::new(io::stdout().lock()) } else { Box::new(io::stderr()) };
-            return Ok(print_json(out, &self.to_json(&losses))?);
+            return Ok(print_json_beside(&self.destination, &self.to_json(&losses))?);
         }
         let how_far = reached(self.decoder).unwrap_or_default();
         say_written(&self.destination, &format!("{}, {how_far}", size_of(self.mesh)), ui);
@@ -134,13 +132,9 @@ impl Decoded<'_> {
 
     fn to_json(&self, losses: &Losses) -> Value {
         let level = self.decoder.mesh().map(|mesh| (mesh.level(), mesh.quantization_bits()));
-        let output = match &self.destination {
-            Destination::Stdout => None,
-            Destination::File(path) => Some(path.display().to_string()),
-        };
         json!({
             "input": self.source,
-            "output": output,
+            "output": self.destination.path(),
             "vertices": self.mesh.num_vertices(),
             "triangles": self.mesh.num_triangles(),
             "level": level.map(|(level, _)| level),
@@ -206,11 +200,6 @@ fn sound_mesh(
         }
         None => Err(error),
     }
-}
-
-fn note_what_is_missing(decoder: &Decoder, args: &Decode, name: &str, ui: &Ui) {
-    let (Some(level), Some(info)) = (args.level, decoder.info()) else { return };
-    note_if_no_level(info, level, name, ui);
 }
 
 fn format_parser() -> impl TypedValueParser<Value = Format> {

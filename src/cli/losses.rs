@@ -1,11 +1,10 @@
 //! What is told of losses: once, on standard error or in JSON; with `--strict` they are an error.
 
 use super::exit::Failure;
-use super::output::print_json;
+use super::output::{Destination, print_json_beside};
 use super::ui::Ui;
 use lwc::losses::{Loss, Losses};
 use serde_json::{Value, json};
-use std::io;
 
 /// Whether losses are refused.
 #[derive(Debug, clap::Args)]
@@ -30,10 +29,15 @@ impl Strictness {
     ///
     /// # Errors
     /// As [`Strictness::check`], and if nobody can be told.
-    pub fn check_or_print(&self, losses: &Losses, json: bool) -> anyhow::Result<()> {
+    pub fn check_or_print(
+        &self,
+        losses: &Losses,
+        json: bool,
+        destination: &Destination,
+    ) -> anyhow::Result<()> {
         let checked = self.check(losses);
         if checked.is_err() && json {
-            print_json(io::stdout().lock(), &json!({ "written": false, "losses": to_json(losses) }))?;
+            print_json_beside(destination, &json!({ "written": false, "losses": to_json(losses) }))?;
         }
         Ok(checked?)
     }

@@ -23,6 +23,14 @@ impl Destination {
         if path == Path::new("-") { Self::Stdout } else { Self::File(path) }
     }
 
+    /// The path in JSON, `None` for standard output.
+    pub fn path(&self) -> Option<String> {
+        match self {
+            Self::Stdout => None,
+            Self::File(path) => Some(path.display().to_string()),
+        }
+    }
+
     pub fn name(&self) -> String {
         match self {
             Self::Stdout => "standard output".into(),
@@ -82,6 +90,17 @@ pub fn say_written(destination: &Destination, what: &str, ui: &Ui) {
     let Destination::File(path) = destination else { return };
     let size = fs::metadata(path).map_or(String::new(), |file| format!(", {} bytes", file.len()));
     ui.say(&format!("{}: {what}{size}", path.display()));
+}
+
+/// Prints what is told as JSON of a command that writes to `destination`: to standard error if that is standard output.
+///
+/// # Errors
+/// If nobody can be told.
+pub fn print_json_beside(destination: &Destination, value: &serde_json::Value) -> io::Result<()> {
+    match destination {
+        Destination::Stdout => print_json(io::stderr(), value),
+        Destination::File(_) => print_json(io::stdout().lock(), value),
+    }
 }
 
 /// `12 vertices, 20 triangles`.

@@ -7,8 +7,14 @@ use crate::passes::attribute::declaration::{MAX_BITS, MAX_TABLE};
 use std::collections::HashMap;
 
 /// How the entries are coded: names, and numbers of few kinds that name things, by a table; directions on the octahedron;
-/// all others uniformly, whole numbers that fit exactly. `None` if a table would be too long for names.
-pub(super) fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOptions) -> Option<Coding> {
+/// all others uniformly, whole numbers that fit exactly. `None` if a table would be too long for names. `must_be_exact`: see
+/// [`must_be_exact`].
+pub(super) fn choose(
+    attribute: &Attribute,
+    used: &[u32],
+    must_be_exact: bool,
+    options: &EncodeOptions,
+) -> Option<Coding> {
     let Some(scalar) = attribute.values.component_type() else { return table(attribute, used) };
     if is_label(attribute, scalar)
         && let Some(table) = table(attribute, used)
@@ -26,7 +32,7 @@ pub(super) fn choose(attribute: &Attribute, used: &[u32], options: &EncodeOption
     };
     let span = Span::of(attribute, used);
     let steps = f64::from((1_u32 << bits) - 1);
-    if must_be_exact(attribute, used) {
+    if must_be_exact {
         return Some(identifiers(attribute, used, span, bits));
     }
     if scalar.is_integer() && span.range <= steps {
@@ -87,12 +93,13 @@ const ELEMENTS_PER_ENTRY: usize = 4;
 
 /// Numbers that name things: exactly, or where even 30 bits do not reach, roughly. Exact values follow the passes then.
 fn identifiers(attribute: &Attribute, used: &[u32], span: Span, bits: u32) -> Coding {
-    let is_short = span.range <= f64::from((1_u32 << bits) - 1);
+    if span.range <= f64::from((1_u32 << bits) - 1) {
+        return span.whole_numbers();
+    }
     let is_wide = span.range > f64::from((1_u32 << MAX_BITS) - 1);
     let most = if is_wide { MAX_TABLE } else { used.len() / ELEMENTS_PER_ENTRY };
-    let table = table(attribute, used).filter(|_| !is_short);
     let is_worth = |table: &Coding| matches!(table, Coding::Table { entries } if entries.len() / attribute.num_components <= most);
-    match table.filter(is_worth) {
+    match table(attribute, used).filter(is_worth) {
         Some(table) => table,
         None if is_wide => span.in_steps(bits),
         None => span.whole_numbers(),

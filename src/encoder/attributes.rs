@@ -8,8 +8,7 @@ use crate::error::EncodeError;
 use crate::losses::Loss;
 use crate::mesh::surface::turns;
 use crate::mesh::{Attribute, Domain, NO_ENTRY};
-use crate::passes::attribute::declaration::MAX_ATTRIBUTES;
-use crate::passes::attribute::declaration::MAX_TABLE;
+use crate::passes::attribute::declaration::{MAX_ATTRIBUTES, MAX_TABLE};
 use crate::passes::attribute::octahedron::Octahedron;
 use crate::passes::attribute::{Coding, Declaration, Declarations};
 use crate::simplification::Seams;
@@ -140,7 +139,8 @@ pub(super) fn quantize(
         }
         let used = compact(&mut of, attribute.num_entries());
         let has_missing = of.contains(&NO_ENTRY);
-        let coding = choose(attribute, &used, options)
+        let must_be_exact = must_be_exact(attribute, &used);
+        let coding = choose(attribute, &used, must_be_exact, options)
             .ok_or_else(|| fail(format!("more than {MAX_TABLE} different names")))?;
         let declaration = Declaration {
             name: attribute.name.clone(),
@@ -156,7 +156,6 @@ pub(super) fn quantize(
         let track = (attribute.domain != Domain::Vertex).then_some(num_tracks);
         num_tracks += usize::from(track.is_some());
         let loose = loose.into_iter().zip(of.split_off(num_on_surface)).collect();
-        let must_be_exact = must_be_exact(attribute, &used);
         let lossy = !(options.lossless || must_be_exact);
         let rounding = lossy.then(|| rounding(attribute, &used, &declaration, &entries)).flatten();
         let mut one = QuantizedAttribute { declaration, entries, of, loose, track, must_be_exact, rounding };

@@ -1,7 +1,7 @@
 //! Which grid a mesh gets: the cube around it, a lattice of its own, or one that the caller names.
 
 use super::grid_choice::GridChoice;
-use super::grid_error::{GridError, Losses, Remedy};
+use super::grid_error::{GridError, LostTriangles, Remedy};
 use super::options::EncodeOptions;
 use super::quantize::{Bounds, cube_around, on_lattice, stretched_around};
 use crate::bitstream::grid::{Grid, Lattice};
@@ -27,7 +27,7 @@ pub(super) fn choose(
     if options.lossless {
         return Ok((grid, GridError::none(grid)));
     }
-    let losses = Losses::of(mesh, &grid);
+    let losses = LostTriangles::of(mesh, &grid);
     if !losses.are_many() {
         return Ok((grid, GridError::of(mesh, loose, grid, losses)));
     }
@@ -41,15 +41,15 @@ pub(super) fn choose(
 }
 
 /// A grid whose axes divide their own extents, if few triangles are lost on it.
-fn stretched(mesh: &TriMesh, bounds: &Bounds, bits: u32) -> Option<(Grid, Losses)> {
+fn stretched(mesh: &TriMesh, bounds: &Bounds, bits: u32) -> Option<(Grid, LostTriangles)> {
     let grid = stretched_around(bounds, bits)?;
-    let losses = Losses::of(mesh, &grid);
+    let losses = LostTriangles::of(mesh, &grid);
     (!losses.are_many()).then_some((grid, losses))
 }
 
 /// What to ask for in place of a grid that is too coarse.
 fn remedy(mesh: &TriMesh, options: &EncodeOptions, bounds: &Bounds) -> Option<Remedy> {
-    let is_enough = |grid: &Grid| !Losses::of(mesh, grid).are_many();
+    let is_enough = |grid: &Grid| !LostTriangles::of(mesh, grid).are_many();
     let on_cube = |bits: u32| cube_around(bounds, bits).is_ok_and(|grid| is_enough(&grid));
     let may_stretch = options.grid == GridChoice::Auto;
     match options.grid {

@@ -2,6 +2,7 @@
 
 use super::quantize::unit_near;
 use crate::bitstream::grid::Grid;
+use crate::mesh::edge_lengths::{length, mean_edge_lengths};
 use crate::mesh::{TriMesh, has_three_vertices};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -52,9 +53,9 @@ impl GridError {
         self.losses().lost()
     }
 
-    fn losses(&self) -> Losses {
+    fn losses(&self) -> LostTriangles {
         let Self { triangles_collapsed: collapsed, triangles_turned: turned, num_triangles: all, .. } = *self;
-        Losses { collapsed, turned, all }
+        LostTriangles { collapsed, turned, all }
     }
 
     /// That of a mesh that is kept bit for bit.
@@ -71,14 +72,14 @@ impl GridError {
     }
 
     /// That of a mesh on a grid. `loose`: vertices that are kept without triangles.
-    pub(super) fn of(mesh: &TriMesh, loose: &[u32], grid: Grid, losses: Losses) -> Self {
+    pub(super) fn of(mesh: &TriMesh, loose: &[u32], grid: Grid, losses: LostTriangles) -> Self {
         let error = |vertex: usize| {
             let position = mesh.positions()[vertex];
             let place = grid.position(grid.cell(position), grid.quantization_bits);
-            DVec3::from(position).distance(DVec3::from(place))
+            length([0, 1, 2].map(|axis| place[axis] - position[axis]))
         };
-        let edges = Edges::of(mesh);
-        let of_vertex = |vertex: usize| match edges.mean(vertex) {
+        let edges = mean_edge_lengths(mesh);
+        let of_vertex = |vertex: usize| match edges[vertex] {
             None => [0.0; 2],
             Some(0.0) => [error(vertex), 0.0],
             Some(mean) => [error(vertex), error(vertex) / mean],
@@ -86,7 +87,7 @@ impl GridError {
         let largest = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
         let found = (0..mesh.num_vertices()).into_par_iter().map(of_vertex).reduce(|| [0.0; 2], largest);
         let [of_surface, in_edges] = found;
-        let Losses { collapsed, turned, all } = losses;
+        let LostTriangles { collapsed, turned, all } = losses;
         Self {
             largest_error: loose.iter().map(|&v| error(v as usize)).fold(of_surface, f64::max),
             largest_error_in_edges: in_edges,
@@ -98,44 +99,16 @@ impl GridError {
     }
 }
 
-/// Lengths of the edges at each vertex of a mesh.
-struct Edges {
-    /// Sum of the lengths and their number; an edge counts once per triangle.
-    of_vertex: Vec<(f64, u32)>,
-}
-
-impl Edges {
-    fn of(mesh: &TriMesh) -> Self {
-        let mut of_vertex = vec![(0.0, 0); mesh.num_vertices()];
-        for triangle in mesh.triangles().iter().filter(|t| has_three_vertices(t)) {
-            let [a, b, c] = triangle.map(|v| DVec3::from(mesh.positions()[v as usize]));
-            let [ab, bc, ca] = [a.distance(b), b.distance(c), c.distance(a)];
-            for (&vertex, length) in triangle.iter().zip([ca + ab, ab + bc, bc + ca]) {
-                let (sum, count) = &mut of_vertex[vertex as usize];
-                *sum += length;
-                *count += 2;
-            }
-        }
-        Self { of_vertex }
-    }
-
-    /// The mean length at a vertex, if a triangle has it.
-    fn mean(&self, vertex: usize) -> Option<f64> {
-        let (sum, count) = self.of_vertex[vertex];
-        (count > 0).then(|| sum / f64::from(count))
-    }
-}
-
 /// How many triangles a grid takes from a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Losses {
+pub(super) struct LostTriangles {
     pub(super) collapsed: usize,
     pub(super) turned: usize,
     /// Triangles of three different vertices.
     pub(super) all: usize,
 }
 
-impl Losses {
+impl LostTriangles {
     pub(super) fn of(mesh: &TriMesh, grid: &Grid) -> Self {
         let [x, y, z] = relative(grid.step(grid.quantization_bits));
         // How an area vector in cells is stretched to one in model units.
@@ -209,7 +182,7 @@ mod tests {
     }
 
     fn measure(mesh: &TriMesh, grid: Grid) -> GridError {
-        GridError::of(mesh, &[], grid, Losses::of(mesh, &grid))
+        GridError::of(mesh, &[], grid, LostTriangles::of(mesh, &grid))
     }
 
     #[test]
@@ -240,7 +213,7 @@ mod tests {
 
     #[test]
     fn a_grid_without_any_relation_to_the_mesh_takes_it_all() {
-        let lost = |side| Losses::of(&strip(0.1), &Grid::cube(4, [0.0; 3], side)).lost();
+        let lost = |side| LostTriangles::of(&strip(0.1), &Grid::cube(4, [0.0; 3], side)).lost();
         assert_eq!([1e100, 1e200, 1e300].map(lost), [2; 3]);
     }
 
@@ -250,7 +223,7 @@ mod tests {
             let (positions, triangles) = strip(0.1).into_parts();
             let positions = positions.into_iter().map(|p| p.map(|x| x * scale)).collect();
             let mesh = TriMesh::new(positions, triangles).unwrap();
-            let lost = |bits| Losses::of(&mesh, &Grid::cube(bits, [0.0; 3], 100.0 * scale)).lost();
+            let lost = |bits| LostTriangles::of(&mesh, &Grid::cube(bits, [0.0; 3], 100.0 * scale)).lost();
             assert_eq!((lost(4), lost(12)), (2, 0), "{scale}");
         }
     }

@@ -1,5 +1,6 @@
 //! What is written, before it is: all that is lost is known by then.
 
+use super::convert::dropped;
 #[cfg(feature = "gltf")]
 use super::error::ReadError;
 use super::error::WriteError;
@@ -12,7 +13,7 @@ use super::mesh_file::MeshFile;
 use super::scene::Scene;
 use super::write_options::WriteOptions;
 use super::{obj, ply, stl};
-use crate::losses::{Loss, LossKind, Losses, Stage};
+use crate::losses::Losses;
 use crate::mesh::{Attributes, TriMesh};
 use std::io::Write;
 
@@ -129,8 +130,7 @@ impl<'a> Plan<'a> {
 fn lost_by_merging(scene: &Scene, ignored: &[String]) -> Losses {
     let reports = || scene.meshes.iter().map(|file| &file.report).chain([&scene.report]);
     let is_new = |name: &&String| !reports().any(|report| report.ignored.contains(name));
-    let dropped = |name: &String| Loss::new(Stage::Writing, LossKind::Dropped, name.as_str());
-    ignored.iter().filter(is_new).map(dropped).collect()
+    ignored.iter().filter(is_new).map(|name| dropped(name, "")).collect()
 }
 
 #[cfg(feature = "gltf")]
@@ -141,17 +141,15 @@ fn container(format: Format) -> gltf::Container {
 /// What a format does not have of what the mesh has once for all.
 fn others_left_out(attributes: &Attributes, file: &File) -> Losses {
     let (has_materials, has_metadata) = match file {
-        // Names of files, which are not written.
-        File::Obj(_) => (false, false),
+        // OBJ has names of files, which are not written.
+        File::Obj(_) | File::Stl(_) => (false, false),
         File::Ply(_) => (false, true),
-        File::Stl(_) => (false, false),
         #[cfg(feature = "gltf")]
         File::Gltf(..) => (true, true),
     };
     let materials = attributes.gltf_materials.iter().map(|_| "materials except their names");
     let metadata = attributes.metadata.iter().map(|(key, _)| key.as_str());
     let (materials, metadata) = (materials.filter(|_| !has_materials), metadata.filter(|_| !has_metadata));
-    let dropped = |name: &str, remedy| Loss::new(Stage::Writing, LossKind::Dropped, name).remedy(remedy);
     let materials = materials.map(|name| dropped(name, "glTF keeps them"));
     materials.chain(metadata.map(|key| dropped(key, "glTF and PLY keep it"))).collect()
 }

@@ -124,6 +124,11 @@ impl WriteOptions {
         Self { up, ..self }
     }
 
+    /// Whether colours are to be linear, given what is usual in the format; `None` leaves them.
+    pub(super) fn linear_colours(&self, usual: bool) -> Option<bool> {
+        (self.color_space == ColorSpace::Convert).then_some(usual)
+    }
+
     /// How far a position may move when it becomes float32, model units.
     pub(super) fn tolerance(&self) -> f64 {
         self.step.filter(|step| step.is_finite()).map_or(0.0, |step| STEP_SHARE * step.max(0.0))

@@ -4,6 +4,8 @@ mod attribute;
 mod build;
 mod corners_at;
 pub(crate) mod ears;
+#[cfg(any(feature = "encoder", feature = "io"))]
+pub(crate) mod edge_lengths;
 #[cfg(feature = "encoder")]
 pub(crate) mod repair;
 mod scene;

@@ -73,7 +73,7 @@ pub fn run(args: &Encode, ui: &Ui) -> anyhow::Result<()> {
     }
     drop(bar);
     losses.append(encoded.losses.clone());
-    args.strictness.check_or_print(&losses, args.json).with_context(|| name.clone())?;
+    args.strictness.check_or_print(&losses, args.json, &destination).with_context(|| name.clone())?;
     destination.write(|out| out.write_all(&encoded.bytes))?;
     let (file, encoded) = (&file, &encoded);
     let report = Report { args, file, losses, verified, encoded, destination, read_seconds, encode_seconds };

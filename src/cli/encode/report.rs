@@ -3,7 +3,7 @@
 use super::args::Encode;
 use super::grid_report;
 use crate::cli::losses;
-use crate::cli::output::{Destination, print_json};
+use crate::cli::output::{Destination, print_json_beside};
 use crate::cli::passes;
 use crate::cli::quantity::counted;
 use crate::cli::ui::Ui;
@@ -11,7 +11,7 @@ use lwc::Encoded;
 use lwc::io::MeshFile;
 use lwc::losses::Losses;
 use serde_json::{Value, json};
-use std::io::{self, Write};
+use std::io;
 
 /// What is told at the end.
 pub struct Report<'a> {
@@ -30,10 +30,7 @@ pub struct Report<'a> {
 impl Report<'_> {
     pub fn print(&self, ui: &Ui) -> anyhow::Result<()> {
         if self.args.json {
-            let to_file = self.destination != Destination::Stdout;
-            let out: Box<dyn Write> =
-                if to_file { Box::new(io::stdout().lock()) } else { Box::new(io::stderr()) };
-            print_json(out, &self.with_inputs(self.to_json()))?;
+            print_json_beside(&self.destination, &self.with_inputs(self.to_json()))?;
         } else if self.destination != Destination::Stdout || ui.is_verbose() {
             ui.say(&self.summary());
             if let Some(usual) = losses::usual(&self.losses) {
@@ -104,16 +101,12 @@ impl Report<'_> {
         let (args, info, mesh) = (self.args, &self.encoded.info, &self.file.mesh);
         let (repair, error) = (&self.encoded.repair, &self.encoded.grid_error);
         let finest = info.passes().last();
-        let output = match &self.destination {
-            Destination::Stdout => None,
-            Destination::File(path) => Some(path.display().to_string()),
-        };
         json!({
             "input": args.input.display().to_string(),
             "input_bytes": self.input_bytes(),
             "input_vertices": mesh.num_vertices(),
             "input_triangles": mesh.num_triangles(),
-            "output": output,
+            "output": self.destination.path(),
             "bytes": self.num_bytes(),
             "bits_per_vertex": passes::bits_per_vertex(self.num_bytes(), info),
             "ratio": self.ratio(),

@@ -1,6 +1,7 @@
 //! What positions and attributes become on their way into a file, and what they lose there.
 
 mod colours;
+mod dropped;
 mod floats;
 mod join;
 mod neutral;
@@ -9,6 +10,7 @@ mod seams;
 mod texture;
 
 pub(super) use colours::{ColourFormat, ColourNumbers, converted};
+pub(super) use dropped::{SPLIT_SEAMS, dropped};
 pub(super) use floats::as_float32;
 pub(super) use join::joined;
 pub(super) use neutral::{Neutral, filled};

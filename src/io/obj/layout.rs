@@ -2,8 +2,11 @@
 
 use crate::{
     io::{
-        ColorSpace, WriteError, WriteOptions,
-        convert::{ColourFormat, ColourNumbers, Neutral, Split, converted, filled, joined, oriented},
+        WriteError, WriteOptions,
+        convert::{
+            ColourFormat, ColourNumbers, Neutral, SPLIT_SEAMS, Split, converted, dropped, filled, joined,
+            oriented,
+        },
     },
     losses::{Loss, LossKind, Losses, Stage},
     mesh::{Attribute, Attributes, Domain, Semantic, TriMesh},
@@ -116,13 +119,9 @@ impl<'a> Layout<'a> {
 
 fn no_seams(colour: &Attribute) -> &'static str {
     match colour.domain {
-        Domain::Corner => "it has seams, which `--split-seams` repeats vertices for",
+        Domain::Corner => SPLIT_SEAMS,
         _ => "PLY keeps it, and `--split-seams` repeats vertices for it",
     }
-}
-
-fn dropped(name: &str, remedy: &str) -> Loss {
-    Loss::new(Stage::Writing, LossKind::Dropped, name).remedy(remedy)
 }
 
 /// The attribute in the conventions of OBJ.
@@ -134,7 +133,7 @@ fn written_as<'a>(
     if !matches!(attribute.semantic, Semantic::Color(_)) {
         return oriented(attribute, false, losses);
     }
-    let is_linear = (options.color_space == ColorSpace::Convert).then_some(false);
+    let is_linear = options.linear_colours(false);
     let format = ColourFormat { is_linear, numbers: ColourNumbers::Any };
     let colour = converted(Cow::Borrowed(attribute), format, losses);
     let is_integer = colour.values.component_type().is_some_and(|scalar| scalar.is_integer());

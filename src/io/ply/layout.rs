@@ -4,9 +4,10 @@ use super::columns::{is_readable, property_names};
 use super::textures::{self, TEXTURE_FILE};
 use crate::{
     io::{
-        ColorSpace, ColorType, WriteError, WriteOptions,
+        ColorType, WriteError, WriteOptions,
         convert::{
-            ColourFormat, ColourNumbers, Neutral, Split, as_float32, converted, filled, joined, oriented,
+            ColourFormat, ColourNumbers, Neutral, SPLIT_SEAMS, Split, as_float32, converted, dropped, filled,
+            joined, oriented,
         },
     },
     losses::{Loss, LossKind, Losses, Stage},
@@ -97,12 +98,6 @@ impl<'a> Layout<'a> {
     }
 }
 
-const SPLIT_SEAMS: &str = "it has seams, which `--split-seams` repeats vertices for";
-
-fn dropped(name: &str, remedy: &str) -> Loss {
-    Loss::new(Stage::Writing, LossKind::Dropped, name).remedy(remedy)
-}
-
 /// The attribute in the conventions and types of PLY.
 fn written_as<'a>(
     attribute: &'a Attribute,
@@ -126,8 +121,7 @@ fn colour_format(options: &WriteOptions) -> ColourFormat {
         ColorType::Float => ColourNumbers::Of(ComponentType::F32),
         ColorType::Keep => ColourNumbers::Any,
     };
-    let is_linear = (options.color_space == ColorSpace::Convert).then_some(false);
-    ColourFormat { is_linear, numbers }
+    ColourFormat { is_linear: options.linear_colours(false), numbers }
 }
 
 /// Attributes of corners without seams are those of vertices; with them as well, if vertices may be repeated.

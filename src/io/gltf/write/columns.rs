@@ -2,8 +2,8 @@
 
 use crate::{
     io::{
-        ColorSpace, WriteOptions,
-        convert::{ColourFormat, ColourNumbers, as_float32, converted, joined, oriented},
+        WriteOptions,
+        convert::{ColourFormat, ColourNumbers, as_float32, converted, dropped, joined, oriented},
     },
     losses::{Loss, LossKind, Losses, Stage},
     mesh::{Attribute, Attributes, ComponentType, Domain, Semantic, TriMesh, Values},
@@ -45,10 +45,6 @@ pub(super) fn first_material(attributes: &Attributes) -> Option<&Attribute> {
     attributes.list.iter().find(is_material)
 }
 
-fn dropped(name: &str, remedy: &str) -> Loss {
-    Loss::new(Stage::Writing, LossKind::Dropped, name).remedy(remedy)
-}
-
 /// The attribute in the conventions and types of glTF, `None` if it has no place for it.
 fn written_as<'a>(
     attribute: &'a Attribute,
@@ -62,7 +58,7 @@ fn written_as<'a>(
     }
     let written = match attribute.semantic {
         Semantic::Color(_) => {
-            let is_linear = (options.color_space == ColorSpace::Convert).then_some(true);
+            let is_linear = options.linear_colours(true);
             let format = ColourFormat { is_linear, numbers: ColourNumbers::Gltf };
             return Some(converted(Cow::Borrowed(attribute), format, losses));
         }
